@@ -1,0 +1,41 @@
+# The project's three kinds of target and the flags they share.
+
+add_library(landmarkdb_flags INTERFACE)
+target_compile_features(landmarkdb_flags INTERFACE cxx_std_20)
+target_compile_options(landmarkdb_flags INTERFACE
+  -Wall -Wextra -Wshadow -Wconversion -Wnon-virtual-dtor -Woverloaded-virtual
+  $<$<BOOL:${LANDMARKDB_WERROR}>:-Werror>)
+target_include_directories(landmarkdb_flags INTERFACE ${PROJECT_SOURCE_DIR})
+target_link_libraries(landmarkdb_flags INTERFACE Threads::Threads)
+
+# landmarkdb_library(name SOURCES ... PUBLIC ... PRIVATE ...): a static library landmarkdb_<name>, seen by
+# others as landmarkdb::<name>. Sources are relative to the calling folder.
+function(landmarkdb_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(landmarkdb_${name} STATIC ${ARG_SOURCES})
+  add_library(landmarkdb::${name} ALIAS landmarkdb_${name})
+  target_link_libraries(landmarkdb_${name} PUBLIC ${ARG_PUBLIC} PRIVATE landmarkdb_flags ${ARG_PRIVATE})
+endfunction()
+
+# landmarkdb_program(target SOURCES ... LINK ...): an executable in ${CMAKE_BINARY_DIR}/bin.
+function(landmarkdb_program target)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${target} ${ARG_SOURCES})
+  target_link_libraries(${target} PRIVATE landmarkdb_flags ${ARG_LINK})
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+endfunction()
+
+# landmarkdb_test(target LABEL unit|integration|concurrency|slow SOURCES ... LINK ...): one GoogleTest
+# program, each of its tests a CTest test with the label.
+function(landmarkdb_test target)
+  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LINK" ${ARGN})
+  if(NOT LANDMARKDB_BUILD_TESTS)
+    return()
+  endif()
+  add_executable(${target} ${ARG_SOURCES})
+  target_link_libraries(${target} PRIVATE landmarkdb_flags ${ARG_LINK} GTest::gmock_main)
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+    PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 600
+      ENVIRONMENT "LANDMARKDB_REAL_DATA=${LANDMARKDB_REAL_DATA};LANDMARKDB_BIN=${CMAKE_BINARY_DIR}/bin")
+endfunction()

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "engine/base/run_context.hpp"
+#include "engine/types/point_cloud.hpp"
+
+namespace landmarkdb {
+
+struct PrepareOptions {
+  double voxel_m = 0.0;          // > 0
+  double normal_radius_m = 0.0;  // > 0
+};
+
+// Thins a sanitised cloud to one point a voxel and gives each a unit normal (the cloud's own where
+// it has them and a viewpoint does not contradict). `counts` comes from sanitise. Throws
+// Error{kInvalidArgument} when fewer than 4 points are left, or all lie on one line.
+PreparedCloud prepare_cloud(const PointCloud& cloud,
+                            const CloudCounts& counts,
+                            const PrepareOptions& options,
+                            const RunContext& context);
+
+}  // namespace landmarkdb

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "engine/types/point_cloud.hpp"
+
+namespace landmarkdb {
+
+enum class Units { kMetres, kMillimetres, kCentimetres, kInches };
+
+// Metres in one unit.
+double metres_per(Units units);
+
+struct ReadOptions {
+  Units units = Units::kMetres;  // of the file's coordinates; the cloud returned is in metres
+  std::uint64_t max_points =
+      200'000'000;              // checked against the header before anything is allocated
+  double mesh_spacing_m = 0.0;  // distance between samples of a mesh; 0: a 300th of its diagonal
+};
+
+// Reads a PCD, PLY, XYZ/PTS text cloud, or an OBJ, STL or PLY mesh (sampled evenly over its
+// surface); the format is recognised from the content, the extension decides only where content
+// cannot.
+//
+// Coordinates too far from zero for float keep their precision: `origin` takes a round offset. NaN
+// points are kept (see sanitise); an organised cloud stays organised. A viewpoint in a PCD header
+// is applied: `points` and `viewpoints` are in the file's world frame.
+//
+// Throws Error{kInvalidArgument} that names the file, what was seen and what was wanted:
+// unreadable, truncated, a header that promises more than the file holds, an unknown format, no
+// points.
+PointCloud read_cloud(const std::filesystem::path& path, const ReadOptions& options);
+
+}  // namespace landmarkdb

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/types/point_cloud.hpp"
+
+namespace landmarkdb {
+
+// One point a voxel of edge `voxel_m`: the mean of the voxel's points (normals averaged and
+// renormalised, colours averaged, the viewpoint of the voxel's first point). Voxel keys are 64-bit,
+// so no extent overflows; voxels come out ordered by key, so the result does not depend on the
+// order of the points beyond float rounding. Throws Error{kInvalidArgument} for a voxel that is not
+// positive and finite.
+PointCloud thin(const PointCloud& cloud, double voxel_m);
+
+}  // namespace landmarkdb

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "engine/base/run_context.hpp"
+#include "engine/types/point_cloud.hpp"
+#include "engine/types/scene_record.hpp"
+
+namespace landmarkdb {
+
+// How an entry is to be described; what is left out is derived from the data.
+struct IndexOptions {
+  EntryKind kind = EntryKind::kPlace;
+  std::optional<double> voxel_m;
+  std::optional<double> radius_m;  // SHOT support
+  KeypointMethod keypoints = KeypointMethod::kStructure;
+  std::optional<Eigen::Vector3d> up;  // scene frame, any length > 0
+};
+
+// One scan of the place, as read from a file (metres), with its pose in the scene frame.
+struct Scan {
+  PointCloud cloud;
+  Eigen::Isometry3d T_scene_cloud = Eigen::Isometry3d::Identity();
+  std::string source;  // file name, for the record
+};
+
+// What indexing would take, from a look at the points alone.
+struct IndexEstimate {
+  FeatureOptions options;
+  std::uint64_t points = 0, points_used = 0, keypoints = 0, database_bytes = 0, memory_bytes = 0;
+  double seconds = 0.0;
+};
+
+// Turns scans into a scene record: sanitise, merge, derive the working resolution, prepare, detect
+// keypoints, describe. `scans` is consumed. Reports the stages "sanitise", "prepare", "keypoints",
+// "describe". Throws Error{kInvalidArgument} when nothing is left to describe (empty, too few
+// points, all on one plane or line) with what was counted; Error{kCancelled} on a stop request.
+SceneRecord describe_scene(std::string name,
+                           std::vector<Scan> scans,
+                           const IndexOptions& options,
+                           const RunContext& context);
+
+// The same as far as the working resolution, then an extrapolation; cheap.
+IndexEstimate estimate_index(std::vector<Scan> scans,
+                             const IndexOptions& options,
+                             const RunContext& context);
+
+}  // namespace landmarkdb

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "engine/base/stage_timings.hpp"
+#include "engine/types/features.hpp"
+
+namespace landmarkdb {
+
+enum class Profile { kRobust, kPaper };
+enum class Measure { kL2, kL1, kChi2, kIntersection, kCorrelation, kBhattacharyya };
+enum class Filter { kRatio, kSlope, kClique };
+enum class Search { kExact, kFlann };
+
+// A question about one cloud. Angles in radians, lengths in metres.
+struct QueryOptions {
+  Profile profile = Profile::kRobust;
+  std::vector<std::string> scenes;  // empty: all
+  std::uint32_t top = 3;
+  double min_confidence = 0.5;
+  std::optional<Eigen::Vector3d> up;  // direction against gravity, sensor frame, any length > 0
+  std::optional<Eigen::Isometry3d> prior_T_scene_sensor;
+  double prior_radius_m = 0.0;              // with a prior: how far the sensor may be from it
+  std::optional<KeypointMethod> keypoints;  // unset: as the profile says
+  Measure measure = Measure::kL2;
+  Search search = Search::kExact;
+  double ratio = 0.7;           // of the ratio filter
+  std::vector<Filter> filters;  // empty: as the profile says
+  bool estimate_scale = false;
+  std::uint64_t seed = 1;
+  bool want_correspondences = false;  // fill QueryResult::correspondences
+};
+
+enum class QueryStatus { kLocalized, kAmbiguous, kNotFound };
+
+// How many pairs each filter of the winning hypothesis left.
+struct CorrespondenceCounts {
+  std::uint32_t putative = 0, after_ratio = 0, after_slope = 0, after_consistency = 0, inliers = 0;
+};
+
+struct Fit {
+  double overlap = 0.0;  // share of the query points that lie on the entry's surface
+  double rmse_m = 0.0;   // of those points, to the surface
+  double free_space_violation =
+      0.0;                     // share of seen-through entry surface among what should be seen
+  double margin = 0.0;         // 0..1: how far ahead of the best different pose
+  double observability = 0.0;  // 0..1: weakest of the six freedoms against the strongest
+};
+
+// T_scene_sensor = T_icp * T_scene_landmark * T_landmark_sensor, exactly.
+struct PoseChain {
+  Eigen::Matrix4d T_landmark_sensor = Eigen::Matrix4d::Identity();
+  Eigen::Matrix4d T_scene_landmark = Eigen::Matrix4d::Identity();  // a similarity
+  Eigen::Matrix4d T_icp = Eigen::Matrix4d::Identity();
+  double scale = 1.0;
+};
+
+struct Hypothesis {
+  std::string scene;
+  std::int64_t scene_version = 0;
+  std::optional<std::string> landmark;
+  double confidence = 0.0;
+  Eigen::Matrix4d T_scene_sensor = Eigen::Matrix4d::Identity();
+  PoseChain chain;
+  CorrespondenceCounts counts;
+  Fit fit;
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  // x y z rx ry rz
+};
+
+// One putative pair of the winning entry, and which filter dropped it ("" = an inlier).
+struct CorrespondenceRecord {
+  std::string scene;
+  Eigen::Vector3f sensor_m;
+  Eigen::Vector3d scene_m;
+  float distance = 0.0F;
+  std::string dropped_by;
+};
+
+struct QueryCounts {
+  std::uint64_t points = 0, points_used = 0, invalid = 0, keypoints = 0;
+  double density_ratio = 1.0;
+};
+
+struct QueryResult {
+  QueryStatus status = QueryStatus::kNotFound;
+  std::string reason;                  // for kNotFound: which stage had nothing left
+  std::vector<Hypothesis> hypotheses;  // best first
+  QueryCounts query;
+  std::uint64_t seed = 1;
+  std::vector<std::string> warnings;
+  std::vector<CorrespondenceRecord> correspondences;
+  StageTimings timings;
+};
+
+}  // namespace landmarkdb
