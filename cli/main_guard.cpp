@@ -1,0 +1,130 @@
+#include "cli/main_guard.hpp"
+
+#include <csignal>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+
+#include "cli/usage_error.hpp"
+#include <CLI/Error.hpp>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.hpp"
+
+namespace landmarkdb::cli {
+namespace {
+
+struct Failure {
+  std::string_view code;
+  std::string message;
+  std::string field;
+  int status = kExitInternal;
+};
+
+// The subcommand that was being parsed, "landmarkdb-indexer add", for the hint at its --help.
+std::string command_in_use(const CLI::App& app) {
+  std::string command = app.get_name();
+  const CLI::App* current = &app;
+  while (!current->get_subcommands().empty()) {
+    current = current->get_subcommands().front();
+    command += ' ' + current->get_name();
+  }
+  return command;
+}
+
+Failure usage_failure(const CLI::App& app, const std::string& what, const std::string& field) {
+  return {error_code_name(ErrorCode::kInvalidArgument),
+          what + " (see " + command_in_use(app) + " --help)",
+          field,
+          kExitUsage};
+}
+
+// Describes the exception in flight; call from a catch block only.
+Failure failure_in_flight(const CLI::App& app) {
+  try {
+    throw;
+  } catch (const Error& error) {
+    return {error_code_name(error.code()), error.what(), error.field(), exit_status(error.code())};
+  } catch (const UsageError& error) {
+    return usage_failure(app, error.what(), error.option());
+  } catch (const CLI::Error& error) {
+    return usage_failure(app, error.what(), {});
+  } catch (const std::bad_alloc&) {
+    return {error_code_name(ErrorCode::kInternal), "out of memory", {}, kExitInternal};
+  } catch (const std::exception& error) {
+    return {error_code_name(ErrorCode::kInternal),
+            std::string("internal error: ") + error.what(),
+            {},
+            kExitInternal};
+  }
+}
+
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  return text;
+}
+
+int report(const CLI::App& app, const Failure& failure, bool json) {
+  if (json) {
+    std::cout << json_error(failure.code, failure.message, failure.field) << std::endl;
+  } else {
+    std::cerr << app.get_name() << ": " << one_line(failure.message) << std::endl;
+  }
+  return failure.status;
+}
+
+int parse_and_run(int argc,
+                  const char* const* argv,
+                  CLI::App& app,
+                  const std::function<int()>& body) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) throw;
+    app.exit(error, std::cout, std::cerr);
+    return 0;
+  }
+  return body();
+}
+
+}  // namespace
+
+bool wants_json(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--") return false;
+    if (argument == "--json") return true;
+  }
+  return false;
+}
+
+std::string json_error(std::string_view code, std::string_view message, std::string_view field) {
+  const nlohmann::json object = {
+      {"error", {{"code", code}, {"message", message}, {"field", field}}}};
+  // File names need not be UTF-8; what is not comes out as U+FFFD rather than as an exception.
+  return object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+int run_main(int argc, const char* const* argv, CLI::App& app, const std::function<int()>& body) {
+  // Past a file-size limit the kernel sends SIGXFSZ; ignored, the write fails with EFBIG instead
+  // and the transaction is rolled back.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const bool json = wants_json(argc, argv);
+  int status = kExitInternal;
+  try {
+    status = parse_and_run(argc, argv, app, body);
+  } catch (...) {
+    status = report(app, failure_in_flight(app), json);
+  }
+  std::cout.flush();
+  if (!std::cout && status == 0) {
+    std::cerr << app.get_name() << ": standard output cannot be written" << std::endl;
+    status = kExitUnavailable;
+  }
+  return status;
+}
+
+}  // namespace landmarkdb::cli
