@@ -17,12 +17,19 @@ function(landmarkdb_library name)
   target_link_libraries(landmarkdb_${name} PUBLIC ${ARG_PUBLIC} PRIVATE landmarkdb_flags ${ARG_PRIVATE})
 endfunction()
 
+# What a preset builds when it needs not everything: all programs, and the tests of one label.
+add_custom_target(programs)
+foreach(label unit integration concurrency slow)
+  add_custom_target(tests_${label})
+endforeach()
+
 # landmarkdb_program(target SOURCES ... LINK ...): an executable in ${CMAKE_BINARY_DIR}/bin.
 function(landmarkdb_program target)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE landmarkdb_flags ${ARG_LINK})
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+  add_dependencies(programs ${target})
 endfunction()
 
 # landmarkdb_test(target LABEL unit|integration|concurrency|slow SOURCES ... LINK ...): one GoogleTest
@@ -35,6 +42,7 @@ function(landmarkdb_test target)
   add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE landmarkdb_flags ${ARG_LINK} GTest::gmock_main)
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  add_dependencies(tests_${ARG_LABEL} ${target})
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 600
       ENVIRONMENT "LANDMARKDB_REAL_DATA=${LANDMARKDB_REAL_DATA};LANDMARKDB_BIN=${CMAKE_BINARY_DIR}/bin")
