@@ -3,7 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <span>
+#include <string_view>
 
 #include "engine/types/point_cloud.hpp"
 
@@ -33,5 +34,11 @@ struct ReadOptions {
 // unreadable, truncated, a header that promises more than the file holds, an unknown format, no
 // points.
 PointCloud read_cloud(const std::filesystem::path& path, const ReadOptions& options);
+
+// The same for a file that is in memory. `name` is what messages call it; its extension helps where
+// the content does not tell the format.
+PointCloud parse_cloud(std::span<const std::byte> bytes,
+                       std::string_view name,
+                       const ReadOptions& options);
 
 }  // namespace landmarkdb

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -29,6 +30,11 @@ class SpatialIndex {
 
   // All points within `radius_m`, by ascending distance, then index. `out` is overwritten.
   void within(const Eigen::Vector3f& query, float radius_m, std::vector<Neighbour>& out) const;
+
+  // The same points in the order of the tree (fixed for given points), without the cost of sorting.
+  void within_unordered(const Eigen::Vector3f& query,
+                        float radius_m,
+                        std::vector<Neighbour>& out) const;
 
  private:
   struct Tree;

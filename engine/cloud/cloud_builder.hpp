@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "engine/types/point_cloud.hpp"
+
+namespace landmarkdb {
+
+// Zero when float keeps 0.1 mm at `p` (metres); else `p` rounded, for PointCloud::origin.
+Eigen::Vector3d round_origin(const Eigen::Vector3d& p);
+
+// Puts a PointCloud together from double coordinates in file units, one point after the other.
+//
+// The origin is decided from the first points (their median): zero, unless they are so far out that
+// float would lose 0.1 mm; then that median, rounded. Not thread-safe.
+class CloudBuilder {
+ public:
+  // `metres` is the length of one file unit; `T_world_file` (translation in file units) is applied
+  // to points and normals.
+  explicit CloudBuilder(double metres,
+                        const Eigen::Isometry3d& T_world_file = Eigen::Isometry3d::Identity());
+
+  void reserve(std::size_t points, bool normals, bool colours);
+  void add_point(const Eigen::Vector3d& p_file);
+  void add_normal(const Eigen::Vector3d& n_file);
+  void add_colour(const std::array<std::uint8_t, 3>& colour);
+  void add_viewpoint_index(std::uint16_t index);
+  std::size_t size() const { return cloud_.points.size() + pending_.size(); }
+
+  // `viewpoints` in file units, world frame. The builder is empty afterwards.
+  PointCloud finish(std::span<const Eigen::Vector3d> viewpoints);
+
+ private:
+  void decide_origin();
+
+  double metres_;
+  Eigen::Isometry3d T_world_file_;
+  bool identity_;
+  bool decided_ = false;
+  std::vector<Eigen::Vector3d> pending_;  // world frame, metres; until the origin is decided
+  PointCloud cloud_;
+};
+
+}  // namespace landmarkdb

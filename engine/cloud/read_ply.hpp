@@ -1,0 +1,13 @@
+#pragma once
+
+#include "engine/cloud/input.hpp"
+#include "engine/cloud/read_cloud.hpp"
+#include "engine/types/point_cloud.hpp"
+
+namespace landmarkdb {
+
+// A PLY file in memory, ascii or binary; with faces it is a mesh and sampled. Throws
+// Error{kInvalidArgument}.
+PointCloud parse_ply(const Input& input, const ReadOptions& options);
+
+}  // namespace landmarkdb

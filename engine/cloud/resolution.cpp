@@ -1,0 +1,130 @@
+#include "engine/cloud/resolution.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.hpp"
+#include "engine/cloud/spatial_index.hpp"
+#include "engine/cloud/voxel_cells.hpp"
+
+namespace landmarkdb {
+namespace {
+
+constexpr std::size_t kFewestPoints = 4;
+constexpr std::size_t kLooked = 200'000;  // points the extent is taken from
+constexpr std::size_t kSamples = 1000;    // pieces of surface the spacing is taken from
+constexpr std::size_t kIndexWhole =
+    200'000;                            // above, distances come from the cells around a sample
+constexpr double kCellsAcross = 64.0;   // a piece of surface is a cell of this part of the extent
+constexpr std::size_t kNeighbour = 16;  // see surface_spacing
+
+double measure_extent(const std::vector<Eigen::Vector3f>& points) {
+  constexpr double kCutOff = 0.01;  // of the points at each end of each axis
+  const std::size_t step = points.size() / kLooked + 1;
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  std::vector<float> values;
+  for (int axis = 0; axis < 3; ++axis) {
+    values.clear();
+    for (std::size_t i = 0; i < points.size(); i += step) values.push_back(points[i][axis]);
+    const auto cut = static_cast<std::ptrdiff_t>(kCutOff * static_cast<double>(values.size()));
+    std::nth_element(values.begin(), values.begin() + cut, values.end());
+    const double low = values[static_cast<std::size_t>(cut)];
+    std::nth_element(values.begin(), values.end() - 1 - cut, values.end());
+    size[axis] =
+        static_cast<double>(values[values.size() - 1 - static_cast<std::size_t>(cut)]) - low;
+  }
+  return size.norm();
+}
+
+// The distance to the k-th neighbour as the edge of the square that one point of an evenly sampled
+// surface takes: k points lie in a circle of area pi d^2. The 16th neighbour, not the first: along
+// a lidar ring the first is centimetres away where the next ring is a metre away.
+double surface_spacing(double distance_m, std::size_t k) {
+  return distance_m * std::sqrt(std::numbers::pi / static_cast<double>(k));
+}
+
+// Squared distances from point `i` to the points of its cell and the 26 around it, itself left out.
+void distances_around(const std::vector<Eigen::Vector3f>& points,
+                      const VoxelCells& grid,
+                      const VoxelCell& cell,
+                      std::uint32_t i,
+                      std::vector<float>& squared) {
+  squared.clear();
+  for (std::int64_t dz = -1; dz <= 1; ++dz) {
+    for (std::int64_t dy = -1; dy <= 1; ++dy) {
+      for (std::int64_t dx = -1; dx <= 1; ++dx) {
+        const VoxelCell* near = find_cell(grid, cell.x + dx, cell.y + dy, cell.z + dz);
+        if (near == nullptr) continue;
+        for (std::uint32_t k = near->begin; k < near->end; ++k) {
+          if (grid.order[k] != i) {
+            squared.push_back((points[grid.order[k]] - points[i]).squaredNorm());
+          }
+        }
+      }
+    }
+  }
+}
+
+double sample_spacing(const std::vector<Eigen::Vector3f>& points,
+                      const VoxelCells& grid,
+                      double cell_m) {
+  const std::size_t step = (grid.cells.size() + kSamples - 1) / kSamples;
+  const std::size_t k = std::min(kNeighbour, points.size() - 1);
+  std::optional<SpatialIndex> index;
+  if (points.size() <= kIndexWhole) index.emplace(points);
+  std::vector<double> spacings;
+  std::vector<Neighbour> neighbours;
+  std::vector<float> squared;
+  for (std::size_t c = 0; c < grid.cells.size(); c += step) {
+    const VoxelCell& cell = grid.cells[c];
+    const std::uint32_t i = grid.order[cell.begin + (cell.end - cell.begin) / 2];
+    double distance_m = cell_m;  // fewer than k around: the cell's size is all that is known
+    if (index) {
+      index->nearest(points[i], k + 1, neighbours);
+      distance_m = std::sqrt(static_cast<double>(neighbours.back().squared_distance_m2));
+    } else {
+      distances_around(points, grid, cell, i, squared);
+      if (squared.size() >= k) {
+        const auto kth = squared.begin() + static_cast<std::ptrdiff_t>(k - 1);
+        std::nth_element(squared.begin(), kth, squared.end());
+        distance_m = std::sqrt(static_cast<double>(*kth));
+      }
+    }
+    spacings.push_back(surface_spacing(distance_m, k));
+  }
+  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
+  std::nth_element(spacings.begin(), middle, spacings.end());
+  return *middle;
+}
+
+}  // namespace
+
+CloudScale measure_scale(const PointCloud& cloud) {
+  if (cloud.size() < kFewestPoints) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "the cloud has " + std::to_string(cloud.size()) + " usable points, want at least " +
+                    std::to_string(kFewestPoints));
+  }
+  CloudScale scale;
+  scale.extent_m = measure_extent(cloud.points);
+  if (!(scale.extent_m > 0.0) || !std::isfinite(scale.extent_m)) return scale;
+  const double cell_m = scale.extent_m / kCellsAcross;
+  scale.spacing_m = sample_spacing(cloud.points, group_by_voxel(cloud.points, cell_m), cell_m);
+  return scale;
+}
+
+bool units_look_wrong(const CloudScale& scale, EntryKind kind) {
+  // A place is a room to a district, an object a screw to a lorry; metres read as millimetres, or
+  // the other way round, fall outside by an order of magnitude or more.
+  constexpr double kPlaceLow_m = 0.5, kPlaceHigh_m = 1000.0;
+  constexpr double kObjectLow_m = 0.01, kObjectHigh_m = 30.0;
+  const bool place = kind == EntryKind::kPlace;
+  return scale.extent_m < (place ? kPlaceLow_m : kObjectLow_m) ||
+         scale.extent_m > (place ? kPlaceHigh_m : kObjectHigh_m);
+}
+
+}  // namespace landmarkdb

@@ -1,0 +1,169 @@
+#include "engine/cloud/sanitise.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "engine/base/error.hpp"
+
+namespace landmarkdb {
+namespace {
+
+// Middle of the values, and half the width of what holds the middle half of them.
+struct Bulk {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double extent_m = 0.0;
+};
+
+double take_median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Bulk measure_bulk(const std::vector<Eigen::Vector3f>& points) {
+  constexpr std::size_t kLooked = 100'000;  // a median needs no more
+  const std::size_t step = points.size() / kLooked + 1;
+  Bulk bulk;
+  Eigen::Vector3d half = Eigen::Vector3d::Zero();
+  std::vector<double> values;
+  for (int axis = 0; axis < 3; ++axis) {
+    values.clear();
+    for (std::size_t i = 0; i < points.size(); i += step) {
+      if (points[i].allFinite()) values.push_back(points[i][axis]);
+    }
+    if (values.empty()) return bulk;
+    bulk.centre[axis] = take_median(values);
+    for (double& value : values) value = std::abs(value - bulk.centre[axis]);
+    half[axis] = take_median(values);
+  }
+  bulk.extent_m = 2.0 * half.norm();
+  return bulk;
+}
+
+// Exact positions seen so far: open addressing over point indices.
+class SeenPositions {
+ public:
+  explicit SeenPositions(const std::vector<Eigen::Vector3f>& points)
+      : points_(points), slots_(std::bit_ceil(2 * points.size() + 2), kEmpty) {}
+
+  // True when no earlier point lies exactly where point `i` does.
+  bool insert(std::uint32_t i) {
+    const Eigen::Vector3f& p = points_[i];
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t slot = hash(p) & mask;; slot = (slot + 1) & mask) {
+      if (slots_[slot] == kEmpty) {
+        slots_[slot] = i;
+        return true;
+      }
+      if (points_[slots_[slot]] == p) return false;
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kEmpty = std::numeric_limits<std::uint32_t>::max();
+
+  static std::uint64_t hash(const Eigen::Vector3f& p) {
+    std::uint64_t h = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      h ^= std::bit_cast<std::uint32_t>(p[axis] + 0.0F);  // -0 and 0 are the same place
+      h *= 0x9e3779b97f4a7c15ULL;                         // 2^64 over the golden ratio
+      h ^= h >> 29U;
+    }
+    return h * 0xbf58476d1ce4e5b9ULL >> 16U;
+  }
+
+  const std::vector<Eigen::Vector3f>& points_;
+  std::vector<std::uint32_t> slots_;
+};
+
+template <typename T>
+void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
+  if (values.empty()) return;
+  for (std::size_t k = 0; k < kept.size(); ++k) values[k] = values[kept[k]];
+  values.resize(kept.size());
+}
+
+void check_normals(std::vector<Eigen::Vector3f>& normals) {
+  constexpr float kTolerance = 0.1F;  // rounded to one digit, a unit normal is still inside
+  for (Eigen::Vector3f& normal : normals) {
+    const float length = normal.norm();
+    if (!(std::abs(length - 1.0F) <= kTolerance)) {
+      normals.clear();
+      return;
+    }
+    normal /= length;
+  }
+}
+
+void check_lengths(const PointCloud& cloud) {
+  auto fits = [&](std::size_t size) { return size == 0 || size == cloud.size(); };
+  if (!fits(cloud.normals.size()) || !fits(cloud.colours.size()) ||
+      !fits(cloud.viewpoint_index.size())) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "a cloud of " + std::to_string(cloud.size()) + " points has " +
+                    std::to_string(cloud.normals.size()) + " normals, " +
+                    std::to_string(cloud.colours.size()) + " colours and " +
+                    std::to_string(cloud.viewpoint_index.size()) +
+                    " viewpoint numbers, want none or one a point");
+  }
+  if (cloud.size() >= std::numeric_limits<std::uint32_t>::max()) {
+    throw Error(ErrorCode::kResourceExhausted,
+                "a cloud has " + std::to_string(cloud.size()) + " points, want below 2^32");
+  }
+}
+
+// Viewpoints that cannot be used (not finite, or a point names one that is not there) are worse
+// than none.
+void check_viewpoints(PointCloud& cloud) {
+  const bool finite = std::all_of(cloud.viewpoints.begin(),
+                                  cloud.viewpoints.end(),
+                                  [](const Eigen::Vector3f& v) { return v.allFinite(); });
+  const bool inside = std::all_of(cloud.viewpoint_index.begin(),
+                                  cloud.viewpoint_index.end(),
+                                  [&](std::uint16_t i) { return i < cloud.viewpoints.size(); });
+  if (finite && inside) return;
+  cloud.viewpoints.clear();
+  cloud.viewpoint_index.clear();
+}
+
+}  // namespace
+
+CloudCounts sanitise(PointCloud& cloud) {
+  constexpr double kFarExtents = 1e5;
+  constexpr double kFarAtLeast_m = 1e6;
+  check_lengths(cloud);
+  CloudCounts counts;
+  counts.points = cloud.size();
+  const Bulk bulk = measure_bulk(cloud.points);
+  const double far_m = std::max(kFarAtLeast_m, kFarExtents * bulk.extent_m);
+  SeenPositions seen(cloud.points);
+  std::vector<std::uint32_t> kept;
+  kept.reserve(cloud.size());
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f& p = cloud.points[i];
+    if (!p.allFinite()) {
+      ++counts.not_finite;
+    } else if ((p.cast<double>() - bulk.centre).cwiseAbs().maxCoeff() > far_m) {
+      ++counts.out_of_range;
+    } else if (!seen.insert(i)) {
+      ++counts.duplicates;
+    } else {
+      kept.push_back(i);
+    }
+  }
+  counts.used = kept.size();
+  keep(cloud.points, kept);
+  keep(cloud.normals, kept);
+  keep(cloud.colours, kept);
+  keep(cloud.viewpoint_index, kept);
+  check_normals(cloud.normals);
+  check_viewpoints(cloud);
+  cloud.width = 0;
+  cloud.height = 0;
+  return counts;
+}
+
+}  // namespace landmarkdb

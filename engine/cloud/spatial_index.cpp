@@ -1,0 +1,134 @@
+#include "engine/cloud/spatial_index.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <nanoflann.hpp>
+
+namespace landmarkdb {
+namespace {
+
+struct Points {
+  std::span<const Eigen::Vector3f> points;
+
+  // The names nanoflann asks for.
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <typename Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+using KdTree = nanoflann::KDTreeSingleIndexAdaptor<
+    nanoflann::L2_Simple_Adaptor<float, Points, float, std::uint32_t>,
+    Points,
+    3,
+    std::uint32_t>;
+
+constexpr std::size_t kLeafPoints = 12;  // fastest of 8..24 on depth frames and fused maps
+// The tree's lower bounds carry rounding errors; this much of slack makes the search exact again.
+constexpr float kBoundSlack = -1e-5F;
+
+bool closer(const Neighbour& a, const Neighbour& b) {
+  return a.squared_distance_m2 < b.squared_distance_m2 ||
+         (a.squared_distance_m2 == b.squared_distance_m2 && a.index < b.index);
+}
+
+// nanoflann takes a point that is nearer than worstDist(); ours takes ties too, hence the step up.
+float just_above(float value) {
+  return std::nextafter(value, std::numeric_limits<float>::infinity());
+}
+
+class NearestResult {
+ public:
+  NearestResult(std::size_t k, std::vector<Neighbour>& out) : k_(k), out_(out) {}
+
+  std::size_t size() const { return out_.size(); }
+  bool full() const { return out_.size() == k_; }
+  float worstDist() const {
+    return full() ? just_above(out_.back().squared_distance_m2)
+                  : std::numeric_limits<float>::infinity();
+  }
+  bool addPoint(float squared_distance, std::uint32_t index) {
+    const Neighbour candidate{index, squared_distance};
+    if (full()) {
+      if (!closer(candidate, out_.back())) return true;
+      out_.pop_back();
+    }
+    auto place = out_.end();
+    while (place != out_.begin() && closer(candidate, *(place - 1))) --place;
+    out_.insert(place, candidate);
+    return true;
+  }
+
+ private:
+  std::size_t k_;
+  std::vector<Neighbour>& out_;
+};
+
+class WithinResult {
+ public:
+  WithinResult(float squared_radius, std::vector<Neighbour>& out)
+      : limit_(just_above(squared_radius)), out_(out) {}
+
+  std::size_t size() const { return out_.size(); }
+  bool full() const { return true; }
+  float worstDist() const { return limit_; }
+  bool addPoint(float squared_distance, std::uint32_t index) {
+    out_.push_back({index, squared_distance});
+    return true;
+  }
+
+ private:
+  float limit_;
+  std::vector<Neighbour>& out_;
+};
+
+}  // namespace
+
+struct SpatialIndex::Tree {
+  explicit Tree(std::span<const Eigen::Vector3f> points)
+      : data{points}, index(3, data, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafPoints)) {}
+
+  Points data;
+  KdTree index;
+};
+
+SpatialIndex::SpatialIndex(std::span<const Eigen::Vector3f> points)
+    : tree_(std::make_unique<Tree>(points)) {}
+SpatialIndex::~SpatialIndex() = default;
+SpatialIndex::SpatialIndex(SpatialIndex&&) noexcept = default;
+SpatialIndex& SpatialIndex::operator=(SpatialIndex&&) noexcept = default;
+
+void SpatialIndex::nearest(const Eigen::Vector3f& query,
+                           std::size_t k,
+                           std::vector<Neighbour>& out) const {
+  out.clear();
+  k = std::min(k, tree_->data.points.size());
+  if (k == 0) return;
+  out.reserve(k);
+  NearestResult result(k, out);
+  tree_->index.findNeighbors(result, query.data(), {32, kBoundSlack, false});
+}
+
+void SpatialIndex::within_unordered(const Eigen::Vector3f& query,
+                                    float radius_m,
+                                    std::vector<Neighbour>& out) const {
+  out.clear();
+  if (tree_->data.points.empty() || !(radius_m >= 0.0F)) return;
+  WithinResult result(radius_m * radius_m, out);
+  tree_->index.findNeighbors(result, query.data(), {32, kBoundSlack, false});
+}
+
+void SpatialIndex::within(const Eigen::Vector3f& query,
+                          float radius_m,
+                          std::vector<Neighbour>& out) const {
+  within_unordered(query, radius_m, out);
+  std::sort(out.begin(), out.end(), closer);
+}
+
+}  // namespace landmarkdb

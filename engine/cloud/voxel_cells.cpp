@@ -1,0 +1,165 @@
+#include "engine/cloud/voxel_cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "engine/base/error.hpp"
+
+namespace landmarkdb {
+namespace {
+
+using Cell = std::array<std::int64_t, 3>;
+
+constexpr double kLargestCell = 0x1p62;  // keeps differences of cell numbers inside 64 bits
+
+struct Keyed {
+  std::uint64_t key;
+  std::uint32_t index;
+};
+
+Cell cell_of(const Eigen::Vector3f& p, double cells_per_m) {
+  Cell cell{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double number = std::floor(static_cast<double>(p[axis]) * cells_per_m);
+    if (!(std::abs(number) < kLargestCell)) {
+      throw Error(ErrorCode::kInvalidArgument,
+                  "voxel size of " + std::to_string(1.0 / cells_per_m) +
+                      " m: too small for points as far out as " + std::to_string(p[axis]) + " m");
+    }
+    cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(number);
+  }
+  return cell;
+}
+
+// Least significant digit first; stable, so points of one key keep their order.
+void radix_sort(std::vector<Keyed>& items, int bits) {
+  constexpr int kDigitBits = 11;  // 2,048 counters stay in the first-level cache
+  constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+  std::vector<Keyed> other(items.size());
+  for (int shift = 0; shift < bits; shift += kDigitBits) {
+    std::array<std::uint32_t, kDigits + 1> start{};
+    auto digit = [shift](const Keyed& item) { return (item.key >> shift) & (kDigits - 1); };
+    for (const Keyed& item : items) ++start[digit(item) + 1];
+    for (std::size_t d = 1; d <= kDigits; ++d) start[d] += start[d - 1];
+    for (const Keyed& item : items) other[start[digit(item)]++] = item;
+    items.swap(other);
+  }
+}
+
+struct Bounds {
+  Cell low{std::numeric_limits<std::int64_t>::max(),
+           std::numeric_limits<std::int64_t>::max(),
+           std::numeric_limits<std::int64_t>::max()};
+  Cell high{std::numeric_limits<std::int64_t>::min(),
+            std::numeric_limits<std::int64_t>::min(),
+            std::numeric_limits<std::int64_t>::min()};
+
+  void add(const Cell& cell) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], cell[axis]);
+      high[axis] = std::max(high[axis], cell[axis]);
+    }
+  }
+  int bits(std::size_t axis) const {
+    return static_cast<int>(std::bit_width(static_cast<std::uint64_t>(high[axis]) -
+                                           static_cast<std::uint64_t>(low[axis])));
+  }
+};
+
+std::vector<std::uint32_t> order_by_key(std::span<const Eigen::Vector3f> points,
+                                        std::vector<std::uint32_t> finite,
+                                        double cells_per_m,
+                                        const Bounds& bounds) {
+  const int shift_y = bounds.bits(0);
+  const int shift_z = shift_y + bounds.bits(1);
+  std::vector<Keyed> items;
+  items.reserve(finite.size());
+  for (const std::uint32_t i : finite) {
+    const Cell cell = cell_of(points[i], cells_per_m);
+    auto from_low = [&](std::size_t axis) {
+      return static_cast<std::uint64_t>(cell[axis]) - static_cast<std::uint64_t>(bounds.low[axis]);
+    };
+    // A shift by 64 would be undefined, and means that the axes above have one cell only.
+    std::uint64_t key = from_low(0);
+    if (shift_y < 64) key |= from_low(1) << shift_y;
+    if (shift_z < 64) key |= from_low(2) << shift_z;
+    items.push_back({key, i});
+  }
+  radix_sort(items, shift_z + bounds.bits(2));
+  for (std::size_t k = 0; k < items.size(); ++k) finite[k] = items[k].index;
+  return finite;
+}
+
+// For extents whose cell numbers do not fit one 64-bit key together.
+std::vector<std::uint32_t> order_by_compare(std::span<const Eigen::Vector3f> points,
+                                            std::vector<std::uint32_t> finite,
+                                            double cells_per_m) {
+  std::vector<std::pair<Cell, std::uint32_t>> items;
+  items.reserve(finite.size());
+  for (const std::uint32_t i : finite) {
+    const Cell cell = cell_of(points[i], cells_per_m);
+    items.push_back({{cell[2], cell[1], cell[0]}, i});
+  }
+  std::sort(items.begin(), items.end());
+  for (std::size_t k = 0; k < items.size(); ++k) finite[k] = items[k].second;
+  return finite;
+}
+
+auto rank(const VoxelCell& cell) { return std::tie(cell.z, cell.y, cell.x); }
+
+}  // namespace
+
+VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points, double edge_m) {
+  if (!(edge_m > 0.0) || !std::isfinite(edge_m) || !std::isfinite(1.0 / edge_m)) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "voxel size is " + std::to_string(edge_m) + " m, want a positive length");
+  }
+  if (points.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw Error(ErrorCode::kResourceExhausted,
+                "voxel grid: " + std::to_string(points.size()) + " points, want below 2^32");
+  }
+  const double cells_per_m = 1.0 / edge_m;
+  std::vector<std::uint32_t> finite;
+  finite.reserve(points.size());
+  Bounds bounds;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].allFinite()) continue;
+    finite.push_back(static_cast<std::uint32_t>(i));
+    bounds.add(cell_of(points[i], cells_per_m));
+  }
+  VoxelCells result;
+  if (finite.empty()) return result;
+  const bool fits = bounds.bits(0) + bounds.bits(1) + bounds.bits(2) <= 64;
+  result.order = fits ? order_by_key(points, std::move(finite), cells_per_m, bounds)
+                      : order_by_compare(points, std::move(finite), cells_per_m);
+  for (std::uint32_t k = 0; k < result.order.size(); ++k) {
+    const Cell cell = cell_of(points[result.order[k]], cells_per_m);
+    const VoxelCell next{cell[0], cell[1], cell[2], k, k + 1};
+    if (!result.cells.empty() && rank(result.cells.back()) == rank(next)) {
+      result.cells.back().end = k + 1;
+    } else {
+      result.cells.push_back(next);
+    }
+  }
+  return result;
+}
+
+const VoxelCell* find_cell(const VoxelCells& cells,
+                           std::int64_t x,
+                           std::int64_t y,
+                           std::int64_t z) {
+  const VoxelCell wanted{x, y, z, 0, 0};
+  const auto place = std::lower_bound(
+      cells.cells.begin(), cells.cells.end(), wanted, [](const VoxelCell& a, const VoxelCell& b) {
+        return rank(a) < rank(b);
+      });
+  return place != cells.cells.end() && rank(*place) == rank(wanted) ? &*place : nullptr;
+}
+
+}  // namespace landmarkdb

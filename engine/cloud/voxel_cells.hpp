@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace landmarkdb {
+
+// The points of one cubic cell of a lattice through the cloud's zero.
+struct VoxelCell {
+  std::int64_t x = 0, y = 0, z = 0;
+  std::uint32_t begin = 0, end = 0;  // its points in VoxelCells::order
+};
+
+// Points grouped by cell. Cells come by ascending (z, y, x); within a cell the points keep their
+// order. Points that are not finite are in no cell.
+struct VoxelCells {
+  std::vector<std::uint32_t> order;  // indices of points
+  std::vector<VoxelCell> cells;
+};
+
+// Throws Error{kInvalidArgument} for an edge that is not positive and finite, or so small that the
+// cell numbers of these points would not fit 64 bits. Cost: a radix sort of 64-bit keys, unless the
+// extent needs wider ones.
+VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points, double edge_m);
+
+// The cell's place in `cells`, or nullptr where it is empty.
+const VoxelCell* find_cell(const VoxelCells& cells, std::int64_t x, std::int64_t y, std::int64_t z);
+
+}  // namespace landmarkdb
