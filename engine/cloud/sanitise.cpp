@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/base/error.hpp"
+#include "engine/cloud/spatial_index.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -86,15 +87,39 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
   values.resize(kept.size());
 }
 
-void check_normals(std::vector<Eigen::Vector3f>& normals) {
+bool is_unit(const Eigen::Vector3f& normal) {
   constexpr float kTolerance = 0.1F;  // rounded to one digit, a unit normal is still inside
-  for (Eigen::Vector3f& normal : normals) {
-    const float length = normal.norm();
-    if (!(std::abs(length - 1.0F) <= kTolerance)) {
-      normals.clear();
-      return;
+  return std::abs(normal.norm() - 1.0F) <= kTolerance;
+}
+
+// Makes all normals exactly unit. A few bad ones (surface reconstruction leaves some) take that of
+// the nearest point with a good one; with many, none can be trusted and all are dropped.
+void repair_normals(const std::vector<Eigen::Vector3f>& points,
+                    std::vector<Eigen::Vector3f>& normals) {
+  constexpr std::size_t kGoodPerBad = 9;
+  std::vector<std::uint32_t> good;
+  std::vector<std::uint32_t> bad;
+  for (std::uint32_t i = 0; i < normals.size(); ++i) {
+    if (is_unit(normals[i])) {
+      normals[i].normalize();
+      good.push_back(i);
+    } else {
+      bad.push_back(i);
     }
-    normal /= length;
+  }
+  if (bad.empty()) return;
+  if (good.size() < kGoodPerBad * bad.size()) {
+    normals.clear();
+    return;
+  }
+  std::vector<Eigen::Vector3f> good_points;
+  good_points.reserve(good.size());
+  for (const std::uint32_t i : good) good_points.push_back(points[i]);
+  const SpatialIndex index(good_points);
+  std::vector<Neighbour> nearest;
+  for (const std::uint32_t i : bad) {
+    index.nearest(points[i], 1, nearest);
+    normals[i] = normals[good[nearest[0].index]];
   }
 }
 
@@ -159,7 +184,7 @@ CloudCounts sanitise(PointCloud& cloud) {
   keep(cloud.normals, kept);
   keep(cloud.colours, kept);
   keep(cloud.viewpoint_index, kept);
-  check_normals(cloud.normals);
+  repair_normals(cloud.points, cloud.normals);
   check_viewpoints(cloud);
   cloud.width = 0;
   cloud.height = 0;
