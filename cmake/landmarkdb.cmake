@@ -44,6 +44,8 @@ function(landmarkdb_test target)
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   add_dependencies(tests_${ARG_LABEL} ${target})
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+    # Two properties of one value each: a list here would be taken apart on its way to ctest.
     PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 600
-      ENVIRONMENT "LANDMARKDB_REAL_DATA=${LANDMARKDB_REAL_DATA};LANDMARKDB_BIN=${CMAKE_BINARY_DIR}/bin")
+      ENVIRONMENT "LANDMARKDB_REAL_DATA=${LANDMARKDB_REAL_DATA}"
+      ENVIRONMENT_MODIFICATION "LANDMARKDB_BIN=set:${CMAKE_BINARY_DIR}/bin")
 endfunction()
