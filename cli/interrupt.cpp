@@ -27,8 +27,8 @@ extern "C" void on_stop_signal(int signal) {
     ::raise(signal);
   } else {
     const int descriptor = write_end.load();
-    if (descriptor >= 0) [[maybe_unused]]
-      const auto written = ::write(descriptor, &kSignalled, 1);
+    // Nothing can be done about a failure here; the second signal still kills.
+    if (descriptor >= 0 && ::write(descriptor, &kSignalled, 1) < 0) errno = 0;
   }
   errno = saved_errno;
 }

@@ -69,7 +69,8 @@ std::string one_line(std::string text) {
 
 int report(const CLI::App& app, const Failure& failure, bool json) {
   if (json) {
-    std::cout << json_error(failure.code, failure.message, failure.field) << std::endl;
+    std::cout << json_error(failure.code, failure.message, failure.field, failure.status)
+              << std::endl;
   } else {
     std::cerr << app.get_name() << ": " << one_line(failure.message) << std::endl;
   }
@@ -101,9 +102,13 @@ bool wants_json(int argc, const char* const* argv) {
   return false;
 }
 
-std::string json_error(std::string_view code, std::string_view message, std::string_view field) {
-  const nlohmann::json object = {
-      {"error", {{"code", code}, {"message", message}, {"field", field}}}};
+std::string json_error(std::string_view code,
+                       std::string_view message,
+                       std::string_view field,
+                       int exit_status) {
+  const nlohmann::ordered_json object = {
+      {"error",
+       {{"code", code}, {"message", message}, {"field", field}, {"exit_status", exit_status}}}};
   // File names need not be UTF-8; what is not comes out as U+FFFD rather than as an exception.
   return object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

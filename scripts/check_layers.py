@@ -25,7 +25,7 @@ ALLOWED = {
     "engine/mono": CLOUD,
     "engine/retrieval": RETRIEVAL,
     "store": ["schema"] + TYPES,
-    "cli": TYPES,
+    "cli": GEOMETRY,
     "indexer": ["cli", "store", "engine"],
     "server": ["cli", "proto", "store", "engine"],
     "client": ["cli", "proto"] + CLOUD,

@@ -1,0 +1,120 @@
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/help.hpp"
+#include "cli/table.hpp"
+#include <CLI/Option.hpp>
+#include <nlohmann/json.hpp>
+
+#include "indexer/commands.hpp"
+#include "indexer/long_job.hpp"
+#include "indexer/new_database.hpp"
+#include "store/store.hpp"
+
+namespace landmarkdb::indexer {
+namespace {
+
+const std::string kProgram = "landmarkdb-indexer --db site.db ";
+
+struct TransferArguments {
+  std::string name;
+  std::string file;
+};
+
+int run_backup(const TransferArguments& arguments, const Program& program) {
+  LongJob job(program);
+  Store::open_read_only(program.database()).backup(arguments.file, job.context());
+  job.finish_progress();
+  program.print({{"backup", arguments.file}}, "backed up to " + arguments.file + "\n");
+  return 0;
+}
+
+int run_export(const TransferArguments& arguments, const Program& program) {
+  LongJob job(program);
+  Store::open_read_only(program.database())
+      .export_scene(arguments.name, arguments.file, job.context());
+  job.finish_progress();
+  program.print({{"scene", arguments.name}, {"file", arguments.file}},
+                "exported " + cli::printable(arguments.name) + " to " + arguments.file + "\n");
+  return 0;
+}
+
+int run_import(const TransferArguments& arguments, const Program& program) {
+  const std::string& db = program.database();
+  LongJob job(program);
+  require_writable_database(db);
+  std::optional<std::string> as_name;
+  if (!arguments.name.empty()) as_name = arguments.name;
+  std::string name;
+  const InsertResult stored = change_or_create(db, [&](Store& store) {
+    const InsertResult result = store.import_scene(arguments.file, job.context(), as_name);
+    for (const SceneSummary& scene : store.list_scenes()) {
+      if (scene.id == result.scene_id) name = scene.name;
+    }
+    return result;
+  });
+  job.finish_progress();
+  program.print(
+      {{"scene", name}, {"scene_id", stored.scene_id}, {"version", stored.version}},
+      "imported " + cli::printable(name) + " version " + std::to_string(stored.version) + "\n");
+  return 0;
+}
+
+using Run = int (*)(const TransferArguments&, const Program&);
+
+CLI::App* add_sub(CLI::App& app,
+                  Program& program,
+                  const std::shared_ptr<TransferArguments>& arguments,
+                  const std::string& name,
+                  const std::string& description,
+                  const std::string& example,
+                  Run run) {
+  CLI::App* command = cli::add_command(app, name, description, {{kProgram + example, ""}});
+  command->callback([arguments, run, &program] {
+    program.action = [arguments, run, &program] { return run(*arguments, program); };
+  });
+  return command;
+}
+
+}  // namespace
+
+void add_transfer_commands(CLI::App& app, Program& program) {
+  const auto arguments = std::make_shared<TransferArguments>();
+  CLI::App* backup = add_sub(app,
+                             program,
+                             arguments,
+                             "backup",
+                             "Write a consistent copy of the database, also while others use it",
+                             "backup site-copy.db",
+                             run_backup);
+  backup->add_option("FILE", arguments->file, "The copy; must not exist")
+      ->type_name("")
+      ->required();
+
+  CLI::App* export_command = add_sub(app,
+                                     program,
+                                     arguments,
+                                     "export",
+                                     "Write one scene as a portable file",
+                                     "export lobby lobby.scene",
+                                     run_export);
+  export_command->add_option("NAME", arguments->name, "The scene")->type_name("")->required();
+  export_command->add_option("FILE", arguments->file, "The file; must not exist")
+      ->type_name("")
+      ->required();
+
+  CLI::App* import_command = add_sub(app,
+                                     program,
+                                     arguments,
+                                     "import",
+                                     "Store a scene that export wrote; a name that exists gets a "
+                                     "new version",
+                                     "import lobby.scene",
+                                     run_import);
+  import_command->add_option("FILE", arguments->file, "The file")->type_name("")->required();
+  import_command->add_option("--as", arguments->name, "Store it under this name")
+      ->type_name("NAME");
+}
+
+}  // namespace landmarkdb::indexer
