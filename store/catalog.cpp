@@ -1,0 +1,107 @@
+#include "store/catalog.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/error.hpp"
+#include "store/segment_rows.hpp"
+
+namespace landmarkdb {
+namespace {
+
+using sqlite::Database;
+using sqlite::Transaction;
+
+std::shared_ptr<const SceneRecord> find_record(const Catalog* catalog, const VersionRow& row) {
+  if (catalog == nullptr) return nullptr;
+  for (const CatalogEntry& entry : catalog->entries) {
+    if (entry.scene_id == row.scene_id && entry.version == row.version && entry.record &&
+        entry.record->name == row.scene) {
+      return entry.record;
+    }
+  }
+  return nullptr;
+}
+
+// The scene as it is now; nothing where it was removed since `scene_id` was listed.
+std::optional<CatalogEntry> load_entry(const Database& database,
+                                       std::int64_t scene_id,
+                                       const Catalog* previous,
+                                       DamagedScene& damage) {
+  const Transaction snapshot(database, Transaction::Kind::kRead);
+  damage = {scene_id, {}, 0, {}};
+  try {
+    const std::vector<VersionRow> versions = read_versions(database, scene_id);
+    if (versions.empty()) return std::nullopt;
+    damage.name = versions.front().scene;
+    const auto active = std::find_if(
+        versions.begin(), versions.end(), [](const VersionRow& row) { return row.active; });
+    if (active == versions.end()) {
+      damage.what = "scene '" + damage.name + "' has no active version";
+      return std::nullopt;
+    }
+    damage.version = active->version;
+    if (active->damage) {
+      damage.what = active->what() + " is marked as damaged: " + *active->damage;
+      return std::nullopt;
+    }
+    CatalogEntry entry;
+    entry.scene_id = scene_id;
+    entry.version = active->version;
+    entry.tags = read_tags(database, scene_id);
+    entry.landmarks = read_landmarks(database, scene_id);
+    entry.record = find_record(previous, *active);
+    if (!entry.record) entry.record = load_record(database, *active);
+    return entry;
+  } catch (const Error& error) {
+    // A segment of a format we do not know harms its own scene only, as damage does.
+    if (error.code() != ErrorCode::kDataLoss && error.code() != ErrorCode::kUnimplemented) throw;
+    damage.what = error.what();
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+Segment load_segment(const Database& database, const VersionRow& row) {
+  try {
+    return read_segment(database, row.segment_id, row.what());
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (error.code() != ErrorCode::kDataLoss || message.starts_with(row.what())) throw;
+    throw Error(error.code(), row.what() + ": " + message);
+  }
+}
+
+std::shared_ptr<const SceneRecord> load_record(const Database& database, const VersionRow& row) {
+  return std::make_shared<const SceneRecord>(
+      decode_segment(load_segment(database, row), row.scene, row.what()));
+}
+
+std::shared_ptr<const Catalog> load_catalog(const Database& database,
+                                            const RunContext& context,
+                                            const OnDamaged& on_damaged,
+                                            const Catalog* previous) {
+  auto catalog = std::make_shared<Catalog>();
+  std::vector<std::int64_t> ids;
+  {
+    const Transaction snapshot(database, Transaction::Kind::kRead);
+    catalog->generation = read_generation(database);
+    sqlite::Statement rows(database, "SELECT id FROM scene ORDER BY id");
+    while (rows.step()) ids.push_back(rows.integer(0));
+  }
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    context.report("load", i, ids.size());
+    DamagedScene damage;
+    std::optional<CatalogEntry> entry = load_entry(database, ids[i], previous, damage);
+    if (entry) {
+      catalog->entries.push_back(std::move(*entry));
+    } else if (!damage.what.empty() && on_damaged) {
+      on_damaged(damage);
+    }
+  }
+  context.report("load", ids.size(), ids.size());
+  return catalog;
+}
+
+}  // namespace landmarkdb

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "engine/base/run_context.hpp"
+#include "store/scene_rows.hpp"
+#include "store/segment.hpp"
+#include "store/sqlite.hpp"
+#include "store/store_types.hpp"
+
+namespace landmarkdb {
+
+// Reads and verifies the segment or record of one version; within the caller's transaction.
+// Failures that name the database only (a damaged page) come to name the version too.
+Segment load_segment(const sqlite::Database& database, const VersionRow& row);
+std::shared_ptr<const SceneRecord> load_record(const sqlite::Database& database,
+                                               const VersionRow& row);
+
+// Store::load_catalog; a read transaction a scene.
+std::shared_ptr<const Catalog> load_catalog(const sqlite::Database& database,
+                                            const RunContext& context,
+                                            const OnDamaged& on_damaged,
+                                            const Catalog* previous);
+
+}  // namespace landmarkdb

@@ -1,0 +1,225 @@
+#include "store/open.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include "engine/base/error.hpp"
+#include "store/output_file.hpp"
+
+namespace landmarkdb {
+namespace {
+
+namespace fs = std::filesystem;
+using sqlite::Database;
+using sqlite::OpenMode;
+
+constexpr std::string_view kMemory = ":memory:";
+constexpr std::string_view kSqliteMagic{"SQLite format 3\0", 16};
+// Bytes a page: measured faster than SQLite's 4096 for arrays of megabytes (fewer links to follow).
+constexpr int kPageBytes = 16384;
+// The write-ahead log is cut back to this after a checkpoint.
+constexpr std::int64_t kWalLimitBytes = std::int64_t{64} << 20U;
+
+std::string quoted(const std::string& path) { return "'" + path + "'"; }
+
+[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+  throw Error(ErrorCode::kInvalidArgument, quoted(path) + " " + why, "db");
+}
+
+// True for a file that exists and is not empty; throws for what can be no database.
+bool has_database(const std::string& path) {
+  if (path.empty()) throw Error(ErrorCode::kInvalidArgument, "no database file is named", "db");
+  if (path.find('\0') != std::string::npos) refuse(path, "has a zero byte in its name");
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) return false;
+  if (status.type() == fs::file_type::none) {
+    throw Error(error == std::errc::permission_denied ? ErrorCode::kPermissionDenied
+                                                      : ErrorCode::kInvalidArgument,
+                quoted(path) + ": " + error.message(),
+                "db");
+  }
+  if (status.type() != fs::file_type::regular)
+    refuse(path, "is no file, so no landmarkdb database");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    throw Error(ErrorCode::kPermissionDenied,
+                quoted(path) + " cannot be read: " + std::strerror(errno),
+                "db");
+  }
+  std::array<char, 16> head{};
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (file.gcount() == 0) return false;
+  if (std::string_view(head.data(), static_cast<std::size_t>(file.gcount())) != kSqliteMagic) {
+    refuse(path, "is not a landmarkdb database: it does not begin as an SQLite file does");
+  }
+  return true;
+}
+
+// An SQLite file in which nothing has been made yet: what a kill during creation leaves.
+bool is_blank(const Database& database) {
+  return database.integer("PRAGMA application_id") == 0 && user_version(database) == 0 &&
+         database.integer("SELECT count(*) FROM sqlite_schema") == 0;
+}
+
+void require_ours(const Database& database) {
+  const std::int64_t id = database.integer("PRAGMA application_id");
+  if (id != kApplicationId) {
+    refuse(database.path(),
+           "is not a landmarkdb database: it is an SQLite file with application id " +
+               std::to_string(id) + ", want " + std::to_string(kApplicationId));
+  }
+}
+
+[[noreturn]] void refuse_newer(const std::string& path, int version, int ours) {
+  throw Error(ErrorCode::kUnimplemented,
+              quoted(path) + " has database version " + std::to_string(version) +
+                  ", this program reads " + std::to_string(ours) +
+                  "; use the newer landmarkdb it was written with",
+              "db");
+}
+
+void require_version(const Database& database) {
+  require_ours(database);
+  const int version = user_version(database);
+  const int ours = latest_version(all_migrations());
+  if (version > ours) refuse_newer(database.path(), version, ours);
+  if (version < ours) {
+    throw Error(ErrorCode::kUnimplemented,
+                quoted(database.path()) + " has database version " + std::to_string(version) +
+                    ", this program reads " + std::to_string(ours) +
+                    "; bring it up to date with `landmarkdb-indexer --db " + database.path() +
+                    " migrate`",
+                "db");
+  }
+}
+
+void prepare_for_writing(const Database& database, const StoreOptions& options) {
+  database.execute("PRAGMA journal_mode = WAL");
+  database.execute("PRAGMA synchronous = FULL");
+  database.execute("PRAGMA journal_size_limit = " + std::to_string(kWalLimitBytes));
+  if (options.max_bytes > 0) {
+    const auto page = static_cast<std::uint64_t>(database.integer("PRAGMA page_size"));
+    database.execute("PRAGMA max_page_count = " + std::to_string(options.max_bytes / page + 1));
+  }
+}
+
+// A database in WAL mode needs its two companion files even to be read; where the folder does not
+// allow them and no log is waiting, the file alone is the whole truth.
+std::unique_ptr<Database> open_for_reading(const std::string& path, const StoreOptions& options) {
+  auto database = std::make_unique<Database>(path, OpenMode::kReadOnly, options.busy_timeout);
+  try {
+    database->integer("SELECT count(*) FROM sqlite_schema");
+    return database;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kUnavailable && error.code() != ErrorCode::kPermissionDenied) {
+      throw;
+    }
+    std::error_code ignored;
+    const auto wal_bytes = fs::file_size(path + "-wal", ignored);
+    if (ignored || wal_bytes == 0) {
+      return std::make_unique<Database>(path, OpenMode::kImmutable, options.busy_timeout);
+    }
+    throw;
+  }
+}
+
+std::string free_backup_path(const std::string& path, int version) {
+  const std::string base = path + ".v" + std::to_string(version) + ".backup";
+  std::string candidate = base;
+  for (int i = 2; fs::exists(candidate); ++i) candidate = base + "-" + std::to_string(i);
+  return candidate;
+}
+
+}  // namespace
+
+std::unique_ptr<Database> create_or_open_database(const std::string& path,
+                                                  const StoreOptions& options) {
+  const bool memory = path == kMemory;
+  if (!memory && has_database(path)) {
+    auto database = std::make_unique<Database>(path, OpenMode::kReadWrite, options.busy_timeout);
+    if (!is_blank(*database)) {
+      require_version(*database);
+      prepare_for_writing(*database, options);
+      return database;
+    }
+  }
+  auto database = std::make_unique<Database>(path, OpenMode::kCreate, options.busy_timeout);
+  database->execute("PRAGMA page_size = " + std::to_string(kPageBytes));
+  prepare_for_writing(*database, options);
+  apply_migrations(*database, all_migrations());
+  require_version(*database);
+  return database;
+}
+
+std::unique_ptr<Database> open_database(const std::string& path,
+                                        bool read_only,
+                                        const StoreOptions& options) {
+  if (!has_database(path)) {
+    refuse(path, "does not exist or is empty; `landmarkdb-indexer --db FILE add` makes a database");
+  }
+  auto database =
+      read_only ? open_for_reading(path, options)
+                : std::make_unique<Database>(path, OpenMode::kReadWrite, options.busy_timeout);
+  require_version(*database);
+  if (!read_only) prepare_for_writing(*database, options);
+  return database;
+}
+
+MigrationReport migrate_database(const std::string& path,
+                                 bool dry_run,
+                                 std::span<const Migration> migrations,
+                                 const RunContext& context) {
+  if (!has_database(path)) refuse(path, "does not exist or is empty; there is nothing to migrate");
+  MigrationReport report;
+  report.to_version = latest_version(migrations);
+  const StoreOptions options;
+  const auto database =
+      dry_run ? open_for_reading(path, options)
+              : std::make_unique<Database>(path, OpenMode::kReadWrite, options.busy_timeout);
+  require_ours(*database);
+  report.from_version = user_version(*database);
+  if (report.from_version > report.to_version) {
+    refuse_newer(path, report.from_version, report.to_version);
+  }
+  report.steps = pending_migrations(report.from_version, migrations);
+  if (dry_run || report.steps.empty()) return report;
+  report.backup_path = free_backup_path(path, report.from_version);
+  backup_database(*database, report.backup_path, context);
+  prepare_for_writing(*database, options);
+  report.steps = apply_migrations(*database, migrations);
+  return report;
+}
+
+std::vector<std::string> location_warnings(const std::string& path) {
+  // From linux/magic.h and the file systems' own sources.
+  static constexpr std::array<std::pair<std::uint32_t, std::string_view>, 8> kNetworkFileSystems{
+      {{0x6969U, "NFS"},
+       {0x517bU, "SMB"},
+       {0xff534d42U, "CIFS"},
+       {0xfe534d42U, "SMB2"},
+       {0x01021997U, "9P"},
+       {0x00c36400U, "Ceph"},
+       {0x0bd00bd0U, "Lustre"},
+       {0x5346414fU, "AFS"}}};
+  struct statfs info {};
+  if (path == kMemory || statfs(path.c_str(), &info) != 0) return {};
+  for (const auto& [magic, name] : kNetworkFileSystems) {
+    if (static_cast<std::uint32_t>(info.f_type) == magic) {
+      return {quoted(path) + " lies on a network file system (" + std::string(name) +
+              "), where file locks cannot be relied upon: use it from one machine at a time, or "
+              "better keep it on a local disk"};
+    }
+  }
+  return {};
+}
+
+}  // namespace landmarkdb

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "engine/base/run_context.hpp"
+#include "store/segment.hpp"
+#include "store/sqlite.hpp"
+
+namespace landmarkdb {
+
+inline constexpr std::size_t kChunkBytes = std::size_t{4} << 20U;
+
+// Writes a segment in chunks and returns its id; within the caller's transaction. Reports the stage
+// "store" in bytes before each chunk.
+std::int64_t write_segment(const sqlite::Database& database,
+                           const Segment& segment,
+                           const RunContext& context);
+
+// Reads a segment and checks every digest. Nothing is allocated before the stored lengths agree
+// with the manifest. Throws Error{kDataLoss} beginning with `what`. Within the caller's
+// transaction.
+Segment read_segment(const sqlite::Database& database,
+                     std::int64_t segment_id,
+                     const std::string& what);
+
+// The manifest alone, with its digest checked.
+Manifest read_manifest(const sqlite::Database& database,
+                       std::int64_t segment_id,
+                       const std::string& what);
+
+void delete_segment(const sqlite::Database& database, std::int64_t segment_id);
+
+}  // namespace landmarkdb
