@@ -1,0 +1,51 @@
+#include "cli/table.hpp"
+
+#include <gtest/gtest.h>
+
+namespace landmarkdb::cli {
+namespace {
+
+TEST(Table, AlignsColumnsToTheirWidestCell) {
+  Table table({{"NAME"}, {"POINTS", Align::kRight}});
+  table.add({"lobby", "7"});
+  table.add({"a", "12345678"});
+  EXPECT_EQ(table.text(),
+            "NAME     POINTS\n"
+            "lobby         7\n"
+            "a      12345678\n");
+}
+
+TEST(Table, CountsCodePointsNotBytes) {
+  Table table({{"NAME"}, {"N"}});
+  table.add({"Bühne", "1"});
+  table.add({"Saal1", "2"});
+  EXPECT_EQ(table.text(), "NAME   N\nBühne  1\nSaal1  2\n");
+}
+
+TEST(Table, LetsNoControlCharacterThrough) {
+  Table table({{"NAME"}});
+  table.add({"\033[2Jgone\n"});
+  EXPECT_EQ(table.text(), "NAME\n?[2Jgone?\n");
+}
+
+TEST(Table, PrintsOnlyTheHeaderWithoutRows) {
+  EXPECT_EQ(Table({{"NAME"}, {"N"}}).text(), "NAME  N\n");
+}
+
+TEST(BytesText, ChoosesTheUnit) {
+  EXPECT_EQ(bytes_text(0), "0 B");
+  EXPECT_EQ(bytes_text(1023), "1023 B");
+  EXPECT_EQ(bytes_text(1536), "1.5 KiB");
+  EXPECT_EQ(bytes_text(std::uint64_t{3} << 40U), "3.0 TiB");
+  EXPECT_EQ(bytes_text(std::uint64_t{5000} << 40U), "5000.0 TiB");
+}
+
+TEST(CountText, GroupsDigitsByThree) {
+  EXPECT_EQ(count_text(0), "0");
+  EXPECT_EQ(count_text(999), "999");
+  EXPECT_EQ(count_text(1000), "1,000");
+  EXPECT_EQ(count_text(2798245), "2,798,245");
+}
+
+}  // namespace
+}  // namespace landmarkdb::cli
