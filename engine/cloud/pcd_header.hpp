@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "engine/cloud/input.hpp"
+#include "engine/cloud/scalar.hpp"
+
+namespace landmarkdb {
+
+enum class PcdData { kAscii, kBinary, kCompressed };
+
+struct PcdField {
+  std::string name;
+  ScalarType type = ScalarType::kFloat32;
+  std::size_t count = 1;   // values a point
+  std::size_t column = 0;  // of its first value, among the values of a point
+  std::size_t offset = 0;  // of its first byte, among the bytes of a point
+  std::size_t bytes() const { return count * scalar_size(type); }
+};
+
+struct PcdHeader {
+  std::vector<PcdField> fields;
+  std::uint64_t points = 0;
+  std::uint32_t width = 0, height = 0;  // 0 x 0 unless the cloud is organised
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();  // VIEWPOINT, file units
+  PcdData data = PcdData::kAscii;
+  std::size_t body = 0;          // where the data starts
+  std::size_t record_bytes = 0;  // of a point
+  std::size_t record_values = 0;
+};
+
+// Reads the header of a PCD file of any version (0.5: COLUMNS, no VIEWPOINT) and checks that what
+// it promises fits into the rest of the file. Throws Error{kInvalidArgument}.
+PcdHeader parse_pcd_header(const Input& input, std::uint64_t max_points);
+
+}  // namespace landmarkdb

@@ -1,0 +1,202 @@
+#include "engine/cloud/read_pcd.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/cloud/cloud_builder.hpp"
+#include "engine/cloud/lzf.hpp"
+#include "engine/cloud/pcd_header.hpp"
+#include "engine/cloud/text_lines.hpp"
+
+namespace landmarkdb {
+namespace {
+
+using Triple = std::array<const PcdField*, 3>;
+
+struct Roles {
+  Triple position{}, normal{}, colour{};
+  const PcdField* packed_colour = nullptr;  // 0xAARRGGBB in the bits of one number
+};
+
+bool complete(const Triple& fields) {
+  return std::find(fields.begin(), fields.end(), nullptr) == fields.end();
+}
+
+Roles find_roles(const Input& input, const PcdHeader& header) {
+  static constexpr std::array<std::string_view, 3> kPosition{"x", "y", "z"};
+  static constexpr std::array<std::string_view, 3> kNormal{"normal_x", "normal_y", "normal_z"};
+  static constexpr std::array<std::string_view, 3> kColour{"r", "g", "b"};
+  Roles roles;
+  for (const PcdField& field : header.fields) {
+    if (field.count == 0) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (field.name == kPosition[axis]) roles.position[axis] = &field;
+      if (field.name == kNormal[axis]) roles.normal[axis] = &field;
+      if (field.name == kColour[axis]) roles.colour[axis] = &field;
+    }
+    const bool packed = field.name == "rgb" || field.name == "rgba";
+    if (packed && scalar_size(field.type) == 4) roles.packed_colour = &field;
+  }
+  if (!complete(roles.position)) refuse(input, "PCD header: no x, y, z among the FIELDS");
+  return roles;
+}
+
+// Gives a field's first value, point after point, whatever the kind of data.
+class PointReader {
+ public:
+  PointReader(const Input& input, const PcdHeader& header) : input_(input), header_(header) {
+    switch (header.data) {
+      case PcdData::kAscii:
+        rest_ = input.text().substr(header.body);
+        row_.resize(header.record_values);
+        break;
+      case PcdData::kBinary:
+        records_ = input.bytes.data() + header.body;
+        break;
+      case PcdData::kCompressed:
+        unpack();
+        break;
+    }
+  }
+
+  // Steps to point `i`; called once for each, in order.
+  void go_to(std::uint64_t i) {
+    point_ = static_cast<std::size_t>(i);
+    if (header_.data != PcdData::kAscii) return;
+    for (double& value : row_) {
+      const std::string_view word = take_word(rest_);
+      if (word.empty()) {
+        refuse(input_,
+               "PCD data ends at point " + std::to_string(i) + " of " +
+                   std::to_string(header_.points));
+      }
+      const std::optional<double> number = parse_number(word);
+      if (!number) {
+        refuse(
+            input_,
+            "PCD data: point " + std::to_string(i) + " has " + in_quotes(word) + ", want a number");
+      }
+      value = *number;
+    }
+  }
+
+  double value(const PcdField& field) const {
+    switch (header_.data) {
+      case PcdData::kAscii:
+        return row_[field.column];
+      case PcdData::kBinary:
+        return load_scalar(
+            records_ + point_ * header_.record_bytes + field.offset, field.type, false);
+      case PcdData::kCompressed:  // field after field, each for all points
+        return load_scalar(unpacked_.get() +
+                               field.offset * static_cast<std::size_t>(header_.points) +
+                               point_ * field.bytes(),
+                           field.type,
+                           false);
+    }
+    return 0.0;
+  }
+
+ private:
+  void unpack() {
+    const std::size_t left = input_.bytes.size() - header_.body;
+    constexpr std::size_t kSizes = 8;  // packed and unpacked size, 32 bits each
+    if (left < kSizes) refuse(input_, "PCD data: the compressed block is cut off");
+    const std::byte* at = input_.bytes.data() + header_.body;
+    const auto packed = static_cast<std::size_t>(load_scalar(at, ScalarType::kUint32, false));
+    const auto size = static_cast<std::size_t>(load_scalar(at + 4, ScalarType::kUint32, false));
+    if (packed > left - kSizes) {
+      refuse(input_,
+             "PCD data: a compressed block of " + std::to_string(packed) + " bytes, but only " +
+                 std::to_string(left - kSizes) + " follow (truncated file?)");
+    }
+    const std::size_t want = static_cast<std::size_t>(header_.points) * header_.record_bytes;
+    if (size != want || size / kLzfMostPerByte > packed) {
+      refuse(input_,
+             "PCD data: a compressed block of " + std::to_string(packed) +
+                 " bytes that unfolds to " + std::to_string(size) + ", want " +
+                 std::to_string(want));
+    }
+    unpacked_ = std::make_unique_for_overwrite<std::byte[]>(size);
+    if (!lzf_decompress({at + kSizes, packed}, {unpacked_.get(), size})) {
+      refuse(input_, "PCD data: the compressed block is damaged");
+    }
+  }
+
+  const Input& input_;
+  const PcdHeader& header_;
+  std::string_view rest_;
+  std::vector<double> row_;
+  const std::byte* records_ = nullptr;
+  std::unique_ptr<std::byte[]> unpacked_;
+  std::size_t point_ = 0;
+};
+
+Eigen::Vector3d take(const PointReader& reader, const Triple& fields) {
+  return {reader.value(*fields[0]), reader.value(*fields[1]), reader.value(*fields[2])};
+}
+
+// A float field carries the colour in its bits, an integer field as a number.
+std::array<std::uint8_t, 3> unpack_colour(double value, ScalarType type) {
+  std::uint32_t bits = 0;
+  if (type == ScalarType::kFloat32) {
+    bits = std::bit_cast<std::uint32_t>(to_float(value));
+  } else if (value > -0x1p31 && value < 0x1p32) {  // false for NaN
+    bits = static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+  }
+  return {static_cast<std::uint8_t>((bits >> 16U) & 255U),
+          static_cast<std::uint8_t>((bits >> 8U) & 255U),
+          static_cast<std::uint8_t>(bits & 255U)};
+}
+
+std::uint8_t to_channel(double value) {
+  return value > 0.0 ? static_cast<std::uint8_t>(std::min(value + 0.5, 255.0)) : std::uint8_t{0};
+}
+
+std::array<std::uint8_t, 3> take_colour(const PointReader& reader, const Roles& roles) {
+  if (roles.packed_colour != nullptr) {
+    return unpack_colour(reader.value(*roles.packed_colour), roles.packed_colour->type);
+  }
+  return {to_channel(reader.value(*roles.colour[0])),
+          to_channel(reader.value(*roles.colour[1])),
+          to_channel(reader.value(*roles.colour[2]))};
+}
+
+}  // namespace
+
+PointCloud parse_pcd(const Input& input, const ReadOptions& options) {
+  const PcdHeader header = parse_pcd_header(input, options.max_points);
+  if (header.points == 0) refuse(input, "PCD header: no points");
+  const Roles roles = find_roles(input, header);
+  const bool normals = complete(roles.normal);
+  const bool colours = roles.packed_colour != nullptr || complete(roles.colour);
+  PointReader reader(input, header);
+  CloudBuilder builder(metres_per(options.units), header.T_world_sensor);
+  builder.reserve(static_cast<std::size_t>(header.points), normals, colours);
+  for (std::uint64_t i = 0; i < header.points; ++i) {
+    reader.go_to(i);
+    builder.add_point(take(reader, roles.position));
+    if (normals) builder.add_normal(take(reader, roles.normal));
+    if (colours) builder.add_colour(take_colour(reader, roles));
+  }
+  // An identity VIEWPOINT stands in nearly every PCD file, maps too; only a picture (rows and
+  // columns) was surely taken from there.
+  const bool organised = header.height > 1;
+  const bool known = organised || header.T_world_sensor.matrix() != Eigen::Matrix4d::Identity();
+  const Eigen::Vector3d viewpoint = header.T_world_sensor.translation();
+  PointCloud cloud = builder.finish(known ? std::span<const Eigen::Vector3d>(&viewpoint, 1)
+                                          : std::span<const Eigen::Vector3d>());
+  if (organised) {
+    cloud.width = header.width;
+    cloud.height = header.height;
+  }
+  return cloud;
+}
+
+}  // namespace landmarkdb
