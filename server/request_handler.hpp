@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+
+#include "engine/base/run_context.hpp"
+#include "proto/landmarkdb.pb.h"
+#include "server/options.hpp"
+#include "server/scene_admin.hpp"
+#include "server/server_state.hpp"
+#include "server/work_queue.hpp"
+
+namespace landmarkdb {
+
+// Where a request is worked on.
+enum class Lane {
+  kInline,   // at once, on the connection's own thread: takes microseconds, never waits
+  kCompute,  // reads the database or computes; many at a time
+  kWrite,    // changes the database or what is in service; one at a time
+};
+Lane lane_of(const v1::Envelope& request);
+
+// "query", "scene_add": the request's name in logs and messages.
+std::string request_name(const v1::Envelope& request);
+
+// An answer that carries an error; `request_id` as given.
+v1::Envelope error_envelope(std::uint64_t request_id,
+                            ErrorCode code,
+                            const std::string& message,
+                            const std::string& field = {});
+
+// Turns a request into its answer: the one place where an Error becomes a message. Knows no socket.
+// Thread-safe.
+class RequestHandler {
+ public:
+  // All must outlive the handler.
+  RequestHandler(const ServerOptions& options,
+                 ServerState& state,
+                 Counters& counters,
+                 const WorkQueue& compute)
+      : options_(options),
+        state_(state),
+        counters_(counters),
+        compute_(compute),
+        admin_(options, state) {}
+
+  // Never throws. `context` says when to stop and whom to tell of progress.
+  v1::Envelope handle(const v1::Envelope& request, const RunContext& context);
+
+ private:
+  void dispatch(const v1::Envelope& request, const RunContext& context, v1::Envelope& reply);
+  v1::QueryResult query(const v1::QueryRequest& request, const RunContext& context);
+  v1::StatsReply stats() const;
+  v1::HealthReply health() const;
+  v1::ReloadReply reload(const RunContext& context);
+
+  const ServerOptions& options_;
+  ServerState& state_;
+  Counters& counters_;
+  const WorkQueue& compute_;
+  SceneAdmin admin_;
+};
+
+}  // namespace landmarkdb

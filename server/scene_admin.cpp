@@ -1,0 +1,144 @@
+#include "server/scene_admin.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "engine/base/error.hpp"
+#include "engine/retrieval/describe_scene.hpp"
+#include "server/convert_scene.hpp"
+#include "store/names.hpp"
+#include "store/store.hpp"
+
+namespace landmarkdb {
+
+namespace {
+
+std::string quarantine_reason(const Served* served, const SceneSummary& scene) {
+  if (served == nullptr) return {};
+  for (const DamagedScene& damaged : served->damaged) {
+    if (damaged.scene_id == scene.id && damaged.version == scene.active_version) {
+      return damaged.what;
+    }
+  }
+  return {};
+}
+
+void add_bounds(const Served* served, v1::SceneInfo& message) {
+  if (served == nullptr) return;
+  const auto& entries = served->localizer->catalog().entries;
+  const auto entry = std::find_if(entries.begin(), entries.end(), [&](const CatalogEntry& e) {
+    return e.scene_id == message.scene_id() && e.version == message.version();
+  });
+  if (entry == entries.end() || entry->record->prepared.points.empty()) return;
+  const PreparedCloud& cloud = entry->record->prepared;
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& point : cloud.points) box.extend(point);
+  *message.mutable_min_m() = to_proto(cloud.origin + box.min().cast<double>());
+  *message.mutable_max_m() = to_proto(cloud.origin + box.max().cast<double>());
+}
+
+}  // namespace
+
+Store SceneAdmin::open_for_change() const {
+  if (options_.read_only) {
+    throw Error(ErrorCode::kPermissionDenied,
+                "this server was started with --read-only: scenes cannot be changed through it");
+  }
+  return Store::open_read_write(state_.db_path());
+}
+
+void SceneAdmin::put_in_service() const {
+  RunContext context;
+  context.threads = std::max(options_.threads, 1);
+  try {
+    state_.reload(context);
+  } catch (const Error& error) {
+    throw Error(
+        error.code(),
+        std::string("the change is stored, but could not be put in service: ") + error.what());
+  }
+}
+
+v1::SceneListReply SceneAdmin::list() const {
+  const std::shared_ptr<const Served> served = state_.served_or_null();
+  const Store store = Store::open_read_only(state_.db_path());
+  v1::SceneListReply reply;
+  for (const SceneSummary& scene : store.list_scenes()) {
+    *reply.add_scenes() = to_proto(scene, false, quarantine_reason(served.get(), scene));
+  }
+  reply.set_generation(store.generation());
+  return reply;
+}
+
+v1::SceneReply SceneAdmin::show(const std::string& name) const {
+  const std::shared_ptr<const Served> served = state_.served_or_null();
+  const SceneSummary scene = Store::open_read_only(state_.db_path()).show(name);
+  v1::SceneReply reply;
+  *reply.mutable_scene() = to_proto(scene, true, quarantine_reason(served.get(), scene));
+  add_bounds(served.get(), *reply.mutable_scene());
+  return reply;
+}
+
+v1::SceneReply SceneAdmin::add(const v1::SceneAddRequest& request,
+                               const RunContext& context) const {
+  Store store = open_for_change();  // refused before an hour is spent on describing
+  validate_name(request.name(), "scene name");
+  SceneAddition addition = from_proto(request, PointAllowance{options_.max_points});
+  const SceneRecord record = describe_scene(
+      std::move(addition.name), std::move(addition.scans), addition.options, context);
+  store.insert(record, context);
+  put_in_service();
+  return show(record.name);
+}
+
+v1::SceneRemoveReply SceneAdmin::remove(const v1::SceneRemoveRequest& request) const {
+  open_for_change().remove(request.name());
+  put_in_service();
+  return {};
+}
+
+v1::SceneReply SceneAdmin::rename(const v1::SceneRenameRequest& request) const {
+  open_for_change().rename(request.old_name(), request.new_name());
+  put_in_service();
+  return show(request.new_name());
+}
+
+v1::SceneReply SceneAdmin::rollback(const v1::SceneRollbackRequest& request) const {
+  open_for_change().rollback(request.name());
+  put_in_service();
+  return show(request.name());
+}
+
+v1::SceneReply SceneAdmin::tag(const v1::SceneTagRequest& request) const {
+  Store store = open_for_change();
+  // Checked first, so that a bad tag leaves none of the others behind.
+  for (const auto& [key, value] : request.tags()) {
+    validate_name(key, "tag");
+    if (!value.empty()) validate_tag_value(value);
+  }
+  for (const auto& [key, value] : request.tags()) {
+    if (value.empty()) {
+      store.untag(request.name(), key);
+    } else {
+      store.tag(request.name(), key, value);
+    }
+  }
+  put_in_service();
+  return show(request.name());
+}
+
+v1::SceneReply SceneAdmin::add_landmark(const v1::LandmarkAddRequest& request) const {
+  Store store = open_for_change();
+  store.add_landmark(request.scene(), from_proto(request.landmark()));
+  put_in_service();
+  return show(request.scene());
+}
+
+v1::SceneReply SceneAdmin::remove_landmark(const v1::LandmarkRemoveRequest& request) const {
+  open_for_change().remove_landmark(request.scene(), request.landmark());
+  put_in_service();
+  return show(request.scene());
+}
+
+}  // namespace landmarkdb

@@ -1,0 +1,99 @@
+#include "server/server_state.hpp"
+
+#include <utility>
+
+#include "engine/base/error.hpp"
+#include "store/store.hpp"
+
+namespace landmarkdb {
+
+namespace {
+
+std::shared_ptr<const Served> build(const std::string& db_path,
+                                    const Served* previous,
+                                    const RunContext& context) {
+  auto served = std::make_shared<Served>();
+  std::shared_ptr<const Catalog> catalog;
+  {
+    const Store store = Store::open_read_only(db_path);
+    catalog = store.load_catalog(
+        context,
+        [&](const DamagedScene& scene) { served->damaged.push_back(scene); },
+        previous != nullptr ? &previous->localizer->catalog() : nullptr);
+  }
+  served->localizer = std::make_shared<const Localizer>(catalog, context);
+  served->generation = catalog->generation;
+  served->scenes = catalog->entries.size();
+  for (const CatalogEntry& entry : catalog->entries) {
+    served->points += entry.record->prepared.size();
+    served->keypoints += entry.record->descriptors.size();
+  }
+  return served;
+}
+
+}  // namespace
+
+std::shared_ptr<const Served> ServerState::served_or_null() const {
+  const std::lock_guard lock(mutex_);
+  return served_;
+}
+
+std::shared_ptr<const Served> ServerState::served() const {
+  const std::lock_guard lock(mutex_);
+  if (served_) return served_;
+  if (!failure_.empty()) {
+    throw Error(ErrorCode::kUnavailable, "the database could not be loaded: " + failure_);
+  }
+  throw Error(ErrorCode::kUnavailable, "the database is still being loaded; try again shortly");
+}
+
+std::shared_ptr<const Served> ServerState::reload(const RunContext& context) {
+  const std::lock_guard one_at_a_time(reload_mutex_);
+  try {
+    const std::shared_ptr<const Served> previous = served_or_null();
+    std::shared_ptr<const Served> next = build(db_path_, previous.get(), context);
+    const std::lock_guard lock(mutex_);
+    served_ = next;
+    failure_.clear();
+    return next;
+  } catch (const std::exception& error) {
+    const auto* reason = dynamic_cast<const Error*>(&error);
+    const bool stopped = reason != nullptr && (reason->code() == ErrorCode::kCancelled ||
+                                               reason->code() == ErrorCode::kDeadlineExceeded);
+    const std::lock_guard lock(mutex_);
+    if (!stopped) failure_ = error.what();
+    throw;
+  }
+}
+
+Health ServerState::health() const {
+  const std::lock_guard lock(mutex_);
+  Health health;
+  if (served_) {
+    health.phase = Phase::kServing;
+    for (const DamagedScene& scene : served_->damaged) {
+      health.quarantined.push_back(scene.name);
+      health.problems.push_back("scene '" + scene.name + "' version " +
+                                std::to_string(scene.version) + " is damaged and not served (" +
+                                scene.what +
+                                "); see `landmarkdb-indexer check`, then `rollback` or"
+                                " `add` it again");
+    }
+    if (!failure_.empty()) {
+      health.problems.push_back("the last reload failed, the catalogue before it is served: " +
+                                failure_);
+    }
+  } else if (!failure_.empty()) {
+    health.phase = Phase::kFailed;
+    health.problems.push_back("the database could not be loaded: " + failure_);
+  }
+  if (stopping_) health.phase = Phase::kStopping;
+  return health;
+}
+
+void ServerState::set_stopping() {
+  const std::lock_guard lock(mutex_);
+  stopping_ = true;
+}
+
+}  // namespace landmarkdb

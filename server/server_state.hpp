@@ -1,0 +1,73 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "engine/base/run_context.hpp"
+#include "engine/retrieval/localizer.hpp"
+#include "store/store_types.hpp"
+
+namespace landmarkdb {
+
+// One catalogue in service. Never changes; queries in flight keep theirs across a reload.
+struct Served {
+  std::shared_ptr<const Localizer> localizer;
+  std::vector<DamagedScene> damaged;  // left out, in quarantine
+  std::uint64_t generation = 0;
+  std::uint64_t scenes = 0, points = 0, keypoints = 0;
+};
+
+enum class Phase { kStarting, kServing, kFailed, kStopping };
+
+struct Health {
+  Phase phase = Phase::kStarting;
+  std::vector<std::string> problems;
+  std::vector<std::string> quarantined;  // scene names
+};
+
+// What all connections share about the database: the catalogue in service and how it is doing.
+// Thread-safe.
+class ServerState {
+ public:
+  explicit ServerState(std::string db_path) : db_path_(std::move(db_path)) {}
+
+  const std::string& db_path() const { return db_path_; }
+
+  // The catalogue in service; Error{kUnavailable} while there is none.
+  std::shared_ptr<const Served> served() const;
+  // The same, null while there is none.
+  std::shared_ptr<const Served> served_or_null() const;
+
+  // Reads the database, builds a new catalogue beside the old one and puts it in service. One at a
+  // time. On an error the old one stays, health tells why, and the error goes on to the caller.
+  std::shared_ptr<const Served> reload(const RunContext& context);
+
+  Health health() const;
+  void set_stopping();
+
+ private:
+  std::string db_path_;
+  std::mutex reload_mutex_;
+  mutable std::mutex mutex_;  // guards all below
+  std::shared_ptr<const Served> served_;
+  std::string failure_;  // of the last reload; empty when it went well
+  bool stopping_ = false;
+};
+
+// Figures for `stats`. Plain counters, each on its own.
+struct Counters {
+  std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
+  std::atomic<std::uint64_t> connections{0}, connections_total{0};
+  std::atomic<std::uint64_t> requests_total{0}, errors_total{0}, rejected_total{0};
+  std::atomic<std::uint64_t> in_flight{0};
+  std::atomic<std::uint64_t> localized{0}, ambiguous{0}, not_found{0};
+  std::atomic<std::uint64_t> query_us_total{0}, query_us_max{0};
+  std::atomic<std::uint64_t> reloads_total{0};
+};
+
+}  // namespace landmarkdb
