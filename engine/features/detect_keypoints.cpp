@@ -8,6 +8,7 @@
 #include "engine/base/error.hpp"
 #include "engine/features/check_cloud.hpp"
 #include "engine/features/iss_keypoints.hpp"
+#include "engine/features/narf_keypoints.hpp"
 #include "engine/features/structure_keypoints.hpp"
 
 namespace landmarkdb {
@@ -56,7 +57,8 @@ Keypoints detect(const PreparedCloud& cloud,
                            context);
     case KeypointMethod::kNarf:
       check_length(options.structure_radius_m, "structure radius");
-      throw Error(ErrorCode::kUnimplemented, "NARF keypoints are not built in");
+      check_length(cloud.resolution_m, "cloud resolution");
+      return narf_keypoints(cloud, options.structure_radius_m, context);
   }
   throw Error(ErrorCode::kInvalidArgument,
               "keypoint method " + std::to_string(static_cast<int>(options.method)) +
