@@ -49,8 +49,7 @@ FileBytes read_whole_file(const std::filesystem::path& path, std::uint64_t max_b
   };
   struct stat info {};
   if (::stat(name.c_str(), &info) != 0) {
-    throw Error(errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kInvalidArgument,
-                name + ": cannot be read: " + std::strerror(errno));
+    throw Error(ErrorCode::kInvalidArgument, name + ": cannot be read: " + std::strerror(errno));
   }
   if (!S_ISREG(info.st_mode)) {
     throw Error(ErrorCode::kInvalidArgument, name + ": is not a regular file");

@@ -44,7 +44,7 @@ struct FileBytes {
 };
 
 // Throws Error{kInvalidArgument} for what is not a readable regular file, or is larger than
-// `max_bytes`, Error{kNotFound} where there is none, Error{kResourceExhausted} without memory.
+// `max_bytes`, or where there is none; Error{kResourceExhausted} without memory.
 FileBytes read_whole_file(const std::filesystem::path& path, std::uint64_t max_bytes);
 
 }  // namespace landmarkdb
