@@ -12,7 +12,7 @@ inline constexpr const char* kDefaultServer = "127.0.0.1:7071";
 
 struct ConnectOptions {
   std::string server = kDefaultServer;                // HOST:PORT, [IPV6]:PORT or unix:PATH
-  std::string token;                                  // where the server asks for one
+  std::string token = {};                             // where the server asks for one
   std::string client = "landmarkdb";                  // program and version, for the server's log
   std::chrono::milliseconds connect_timeout{10'000};  // until Hello is answered
   std::size_t max_reply_bytes = std::size_t{256} * 1024 * 1024;

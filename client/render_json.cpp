@@ -99,6 +99,10 @@ nlohmann::ordered_json query_json(const QueryResult& result) {
   return out;
 }
 
+std::string dump(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string_view status_name(QueryStatus status) {
   switch (status) {
     case QueryStatus::kLocalized:

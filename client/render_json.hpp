@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,6 +13,9 @@ namespace landmarkdb::client {
 // the same double. Transforms are 16 numbers row by row, lengths metres, angles radians but for
 // `roll_pitch_yaw_deg`.
 nlohmann::ordered_json query_json(const QueryResult& result);
+
+// One line of text; what is not UTF-8 (a name from an old database) becomes U+FFFD.
+std::string dump(const nlohmann::ordered_json& json);
 
 // "localized", "ambiguous" or "not_found".
 std::string_view status_name(QueryStatus status);

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "cli/table.hpp"
 #include "client/render_json.hpp"
 #include "engine/geometry/pose.hpp"
 
@@ -36,9 +37,9 @@ std::string pose_text(const Eigen::Matrix4d& T) {
 }
 
 std::string place_text(const Hypothesis& h) {
-  std::string out = "scene " + h.scene;
+  std::string out = "scene " + cli::printable(h.scene);
   if (h.scene_version > 0) out += print(" (version %lld)", static_cast<long long>(h.scene_version));
-  if (h.landmark) out += ", landmark " + *h.landmark;
+  if (h.landmark) out += ", landmark " + cli::printable(*h.landmark);
   return out + print(", confidence %.2f", h.confidence);
 }
 
@@ -117,7 +118,7 @@ std::string footer_text(const QueryResult& result) {
 std::string query_text(const QueryResult& result) {
   std::string out(status_name(result.status));
   if (result.status == QueryStatus::kNotFound) {
-    out += ": " + result.reason + "\n";
+    out += ": " + cli::printable(result.reason) + "\n";
     out +=
         "  hint        is the place indexed (landmarkdb scene list), are the units right "
         "(--units),\n";

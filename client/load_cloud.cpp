@@ -1,0 +1,40 @@
+#include "client/load_cloud.hpp"
+
+#include <stdexcept>
+
+#include "cli/usage_error.hpp"
+#include "client/choices.hpp"
+#include "engine/cloud/depth_image.hpp"
+#include "engine/cloud/read_cloud.hpp"
+#include "engine/geometry/camera.hpp"
+
+namespace landmarkdb::client {
+namespace {
+
+Units units_of(const std::string& name) {
+  if (name == "mm") return Units::kMillimetres;
+  if (name == "cm") return Units::kCentimetres;
+  if (name == "inch") return Units::kInches;
+  return Units::kMetres;
+}
+
+PointCloud read(const std::filesystem::path& path, const LoadOptions& options) {
+  if (options.camera.empty()) return read_cloud(path, {.units = units_of(options.units)});
+  if (options.units != "m") {
+    throw cli::UsageError("--units", "a depth image has its unit in the camera file (depth_scale)");
+  }
+  return read_depth_image(path, read_camera(options.camera));
+}
+
+}  // namespace
+
+PointCloud load_cloud(const std::filesystem::path& path, const LoadOptions& options) {
+  PointCloud cloud = read(path, options);
+  if (options.viewpoint) {  // viewpoints are floats around the origin, as the points are
+    cloud.viewpoints = {(*options.viewpoint - cloud.origin).cast<float>()};
+    cloud.viewpoint_index.clear();
+  }
+  return cloud;
+}
+
+}  // namespace landmarkdb::client

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "engine/types/point_cloud.hpp"
+
+namespace landmarkdb::client {
+
+// How a file named on the command line is to be read.
+struct LoadOptions {
+  std::string units = "m";                   // "m", "mm", "cm" or "inch"
+  std::string camera;                        // a camera file: the input is a depth image; or empty
+  std::optional<Eigen::Vector3d> viewpoint;  // metres, the cloud's own frame; replaces the file's
+};
+
+// Reads a cloud, mesh or depth image. Throws Error{kInvalidArgument} naming the file.
+PointCloud load_cloud(const std::filesystem::path& path, const LoadOptions& options);
+
+}  // namespace landmarkdb::client

@@ -1,0 +1,47 @@
+#include "client/load_cloud.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "cli/usage_error.hpp"
+#include "engine/base/error.hpp"
+
+namespace landmarkdb::client {
+namespace {
+
+class LoadCloud : public ::testing::Test {
+ protected:
+  LoadCloud() { std::ofstream(path_) << "1000 2000 3000\n4000 5000 6000\n7000 8000 9500\n"; }
+  ~LoadCloud() override { std::filesystem::remove(path_); }
+  std::string path_ = ::testing::TempDir() + "landmarkdb_" +
+                      ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".xyz";
+};
+
+TEST_F(LoadCloud, ReadsInTheUnitsNamed) {
+  const PointCloud cloud = load_cloud(path_, {.units = "mm", .camera = {}, .viewpoint = {}});
+  ASSERT_EQ(cloud.size(), 3U);
+  EXPECT_NEAR(cloud.points[0].z() + cloud.origin.z(), 3.0, 1e-6);
+}
+
+TEST_F(LoadCloud, PutsTheViewpointIntoTheCloudsFrame) {
+  const PointCloud cloud =
+      load_cloud(path_, {.units = "m", .camera = {}, .viewpoint = Eigen::Vector3d(1, 2, 3)});
+  ASSERT_EQ(cloud.viewpoints.size(), 1U);
+  EXPECT_EQ(cloud.viewpoints[0].cast<double>() + cloud.origin, Eigen::Vector3d(1, 2, 3));
+}
+
+TEST_F(LoadCloud, NamesTheFileThatIsNotThere) {
+  EXPECT_THROW(load_cloud("/nowhere/x.ply", {}), Error);
+  EXPECT_THROW(load_cloud(path_, {.units = "m", .camera = "/nowhere/camera.yaml", .viewpoint = {}}),
+               Error);
+}
+
+TEST_F(LoadCloud, TakesNoUnitsForADepthImage) {
+  EXPECT_THROW(load_cloud(path_, {.units = "mm", .camera = "camera.yaml", .viewpoint = {}}),
+               cli::UsageError);
+}
+
+}  // namespace
+}  // namespace landmarkdb::client
