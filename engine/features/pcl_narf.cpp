@@ -26,23 +26,17 @@ constexpr double kCoarsestResolution = 5.0 * kDegree;
 constexpr float kNearest_m = 1e-3F;
 constexpr float kFarthest_m = 1e6F;
 
-// PCL 1.13 computes, for the interest of a pixel, the cell of an angle histogram from the direction
-// in which the surface changes, and does not look whether that direction is a number: NaN becomes
-// cell INT_MIN, a write far outside the histogram. The direction is NaN where a border's plane is
-// seen exactly edge-on (a division by normal . view, 0), which simulated scans hit and real ones
-// hardly ever do. Such pixels are given no score here, before the detector reads them, and it then
-// passes them over.
+// Below the rounding of a unit vector of floats, far above the square root of the smallest float.
+constexpr float kLeastComponent = 1e-6F;
+
+// Shows the detector mended directions: it asks for the scores again, and they are not computed
+// twice.
 class GuardedBorders : public pcl::RangeImageBorderExtractor {
  public:
   void guard(std::size_t pixels) {
-    getSurfaceChangeScores();  // computes both arrays, once
-    for (std::size_t i = 0; i < pixels; ++i) {
-      if (std::isfinite(surface_change_scores_[i]) && surface_change_directions_[i].allFinite()) {
-        continue;
-      }
-      surface_change_scores_[i] = 0.0F;
-      surface_change_directions_[i].setZero();
-    }
+    getSurfaceChangeScores();  // computes both arrays
+    mend_surface_changes(std::span(surface_change_scores_, pixels),
+                         std::span(surface_change_directions_, pixels));
   }
 };
 
@@ -95,6 +89,18 @@ bool crop_to_seen(pcl::RangeImage& image) {
 
 }  // namespace
 
+void mend_surface_changes(std::span<float> scores, std::span<Eigen::Vector3f> directions) {
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    if (!std::isfinite(scores[i]) || !directions[i].allFinite()) {
+      scores[i] = 0.0F;
+      directions[i].setZero();
+    }
+    for (float& component : directions[i]) {
+      if (std::abs(component) < kLeastComponent) component = 0.0F;
+    }
+  }
+}
+
 std::vector<Eigen::Vector3f> narf_interest_points(std::span<const Eigen::Vector3f> points,
                                                   double angular_resolution_rad,
                                                   double support_m) {
@@ -129,8 +135,6 @@ std::vector<Eigen::Vector3f> narf_interest_points(std::span<const Eigen::Vector3
   borders.setRangeImage(&image);
   borders.guard(image.size());
   pcl::NarfKeypoint detector(&borders, static_cast<float>(support_m));
-  // The constructor takes the extractor as it is: what guard() computed and mended is not computed
-  // again.
   detector.getParameters().max_no_of_threads = 1;
   std::vector<Eigen::Vector3f> found;
   for (const auto& point : detector.getInterestPoints().points) {

@@ -16,4 +16,15 @@ std::vector<Eigen::Vector3f> narf_interest_points(std::span<const Eigen::Vector3
                                                   double angular_resolution_rad,
                                                   double support_m);
 
+// The guard, one element a pixel of PCL's border extractor.
+//
+// PCL 1.13 turns the direction in which the surface changes into a cell of an angle histogram and
+// does not check the angle: NaN becomes cell INT_MIN, a write far outside. Two inputs lead there.
+// A border's plane seen exactly edge-on divides by its zero slope, and the direction is not finite.
+// And a direction along the line of sight, projected into the image, may leave components of 1e-20,
+// whose squares underflow; divided by their length they exceed 1, and the arc cosine is NaN. Both
+// take surfaces as exact as only a simulated scan has. So pixels without a finite direction lose
+// their score, and components below float rounding become zero.
+void mend_surface_changes(std::span<float> scores, std::span<Eigen::Vector3f> directions);
+
 }  // namespace landmarkdb

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
@@ -129,6 +130,21 @@ TEST(NarfKeypoints, FollowsTheAxesWhicheverIsUp) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_LT((Eigen::Vector3f(a[i].y(), a[i].z(), a[i].x()) - b[i]).norm(), 1e-5F);
   }
+}
+
+TEST(MendSurfaceChanges, TakesTheScoreOfDirectionsThatAreNoneAndTheDustOffTheRest) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  std::vector<float> scores = {1.0F, 0.5F, nan, 0.7F, 1.0F};
+  std::vector<Eigen::Vector3f> directions = {
+      {nan, 0, 1}, {0, 0.6F, 0.8F}, {1, 0, 0}, {1e-21F, -1e-9F, 1}, {0, -infinity, 0}};
+  mend_surface_changes(scores, directions);
+  EXPECT_EQ(scores, (std::vector<float>{0.0F, 0.5F, 0.0F, 0.7F, 0.0F}));
+  EXPECT_EQ(directions[0], Eigen::Vector3f::Zero());
+  EXPECT_EQ(directions[1], Eigen::Vector3f(0, 0.6F, 0.8F));
+  EXPECT_EQ(directions[2], Eigen::Vector3f::Zero());
+  EXPECT_EQ(directions[3], Eigen::Vector3f(0, 0, 1));
+  EXPECT_EQ(directions[4], Eigen::Vector3f::Zero());
 }
 
 TEST(NarfKeypoints, UnitesTheViewpoints) {
