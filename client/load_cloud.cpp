@@ -31,7 +31,8 @@ PointCloud read(const std::filesystem::path& path, const LoadOptions& options) {
 PointCloud load_cloud(const std::filesystem::path& path, const LoadOptions& options) {
   PointCloud cloud = read(path, options);
   if (options.viewpoint) {  // viewpoints are floats around the origin, as the points are
-    cloud.viewpoints = {(*options.viewpoint - cloud.origin).cast<float>()};
+    const Eigen::Vector3d viewpoint_m = *options.viewpoint * metres_per(units_of(options.units));
+    cloud.viewpoints = {(viewpoint_m - cloud.origin).cast<float>()};
     cloud.viewpoint_index.clear();
   }
   return cloud;

@@ -14,7 +14,7 @@ namespace landmarkdb::client {
 struct LoadOptions {
   std::string units = "m";                   // "m", "mm", "cm" or "inch"
   std::string camera;                        // a camera file: the input is a depth image; or empty
-  std::optional<Eigen::Vector3d> viewpoint;  // metres, the cloud's own frame; replaces the file's
+  std::optional<Eigen::Vector3d> viewpoint;  // the cloud's own frame and units; replaces the file's
 };
 
 // Reads a cloud, mesh or depth image. Throws Error{kInvalidArgument} naming the file.

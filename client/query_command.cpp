@@ -38,7 +38,7 @@ void add_input_options(CLI::App& app, QueryArguments& a) {
       ->capture_default_str();
   app.add_option("--viewpoint",
                  a.viewpoint,
-                 "Where the sensor stood, in metres in the cloud's frame [the file's, else 0,0,0]")
+                 "Where the sensor stood, in the cloud's frame and units [the file's, else 0,0,0]")
       ->type_name("x,y,z");
 }
 

@@ -37,7 +37,7 @@ void add_scene_add_options(CLI::App& command, SceneAddArguments& a) {
   cli::add_repeated(command,
                     "--viewpoint",
                     a.viewpoints,
-                    "Where each cloud was scanned from, in its own frame [the file's]")
+                    "Where each cloud was scanned from, in its own frame and units [the file's]")
       ->type_name("x,y,z");
   command.add_option("--keypoints", a.keypoints, "Keypoint detector [structure]")
       ->check(CLI::IsMember(kKeypointNames));

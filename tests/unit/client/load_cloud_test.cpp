@@ -25,11 +25,11 @@ TEST_F(LoadCloud, ReadsInTheUnitsNamed) {
   EXPECT_NEAR(cloud.points[0].z() + cloud.origin.z(), 3.0, 1e-6);
 }
 
-TEST_F(LoadCloud, PutsTheViewpointIntoTheCloudsFrame) {
-  const PointCloud cloud =
-      load_cloud(path_, {.units = "m", .camera = {}, .viewpoint = Eigen::Vector3d(1, 2, 3)});
+TEST_F(LoadCloud, TakesTheViewpointInTheCloudsFrameAndUnits) {
+  const PointCloud cloud = load_cloud(
+      path_, {.units = "mm", .camera = {}, .viewpoint = Eigen::Vector3d(1000, 2000, 500)});
   ASSERT_EQ(cloud.viewpoints.size(), 1U);
-  EXPECT_EQ(cloud.viewpoints[0].cast<double>() + cloud.origin, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(cloud.viewpoints[0].cast<double>() + cloud.origin, Eigen::Vector3d(1, 2, 0.5));
 }
 
 TEST_F(LoadCloud, NamesTheFileThatIsNotThere) {
