@@ -15,8 +15,9 @@
 namespace landmarkdb {
 namespace {
 
-constexpr double kDefaultSpacings = 300.0;   // of the diagonal, where no spacing is asked for
-constexpr double kMostDefaultSamples = 5e6;  // a crumpled mesh gets wider spacing instead
+constexpr double kDefaultSpacings = 300.0;        // of the diagonal, where no spacing is asked for
+constexpr double kMostDefaultSamples = 5e6;       // a crumpled mesh gets wider spacing instead
+constexpr double kFewestDefaultSamples = 1000.0;  // a needle of a mesh gets narrower spacing
 constexpr std::uint64_t kSeed = 1;
 
 double triangle_area(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
@@ -142,7 +143,9 @@ double area_per_sample(const Input& input,
   if (spacing == 0.0) {
     const double step = diagonal(mesh) / kDefaultSpacings;
     const double most = std::min(kMostDefaultSamples, static_cast<double>(options.max_points));
-    return std::max(step * step, total_area / std::max(most, 1.0));
+    const double fewest = std::min(kFewestDefaultSamples, most);
+    return std::clamp(
+        step * step, total_area / std::max(most, 1.0), total_area / std::max(fewest, 1.0));
   }
   const double samples = total_area / (spacing * spacing);
   if (!(samples <= static_cast<double>(options.max_points))) {
@@ -154,20 +157,19 @@ double area_per_sample(const Input& input,
 }
 
 // Normals for the samples: from the vertices, from the faces times `sign`, or none.
-bool add_normal(CloudBuilder& builder,
+void add_normal(CloudBuilder& builder,
                 const Mesh& mesh,
                 const std::array<std::uint32_t, 3>& triangle,
                 const Barycentric& at,
                 double sign) {
   if (mesh.normals.size() == mesh.vertices.size()) {
     builder.add_normal(blend(mesh.normals, triangle, at).cast<double>().normalized());
-    return true;
+    return;
   }
-  if (sign == 0.0) return false;
+  if (sign == 0.0) return;
   const Eigen::Vector3d& a = mesh.vertices[triangle[0]];
   builder.add_normal(
       sign * (mesh.vertices[triangle[1]] - a).cross(mesh.vertices[triangle[2]] - a).normalized());
-  return true;
 }
 
 }  // namespace
@@ -203,6 +205,10 @@ PointCloud sample_mesh(const Input& input, const Mesh& mesh, const ReadOptions& 
       add_normal(builder, mesh, triangle, at, sign);
       if (colours) builder.add_colour(blend_colour(mesh, triangle, at));
     }
+  }
+  if (builder.size() == 0) {
+    refuse(input,
+           "a mesh too small to be sampled every " + std::to_string(options.mesh_spacing_m) + " m");
   }
   return builder.finish({});
 }
