@@ -1,13 +1,12 @@
 #include "cli/help.hpp"
 
 #include "cli/completion.hpp"
+#include "cli/help_text.hpp"
 #include "cli/man_page.hpp"
 #include "cli/version.hpp"
 
 namespace landmarkdb::cli {
 namespace {
-
-constexpr std::size_t kOptionColumn = 34;  // wide enough for "--viewpoint x,y,z ..." on one line
 
 std::string examples_text(const std::vector<Example>& examples) {
   std::string text = examples.empty() ? "" : "Examples:";
@@ -22,7 +21,6 @@ void describe(CLI::App& app, const std::vector<Example>& examples) {
   app.footer(examples_text(examples));
   app.set_version_flag(
       "--version", version_text(program_of(app).get_name()), "Print the versions and exit");
-  app.get_formatter()->column_width(kOptionColumn);
 }
 
 }  // namespace
@@ -39,6 +37,9 @@ void set_up_program(CLI::App& app,
                     const std::vector<Example>& examples) {
   app.name(name);
   app.description(description);
+  app.formatter_fn([](const CLI::App* command, const std::string&, CLI::AppFormatMode) {
+    return help_text(*command);
+  });
   app.set_help_flag("-h,--help", "Print this help and exit");
   describe(app, examples);
   add_completion_command(app);

@@ -6,10 +6,10 @@
 #include <new>
 #include <string>
 
-#include "cli/usage_error.hpp"
 #include <CLI/Error.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli/usage_error.hpp"
 #include "engine/base/error.hpp"
 
 namespace landmarkdb::cli {

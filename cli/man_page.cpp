@@ -45,13 +45,6 @@ std::string roff(const std::string& text) {
   return out;
 }
 
-std::string value_text(const OptionRow& option) {
-  if (option.choices.empty()) return option.value;
-  std::string text;
-  for (const std::string& choice : option.choices) text += (text.empty() ? "" : "|") + choice;
-  return text;
-}
-
 void append_option(const OptionRow& option, std::string& page) {
   page += ".TP\n";
   std::string names;
@@ -59,17 +52,17 @@ void append_option(const OptionRow& option, std::string& page) {
     names += (names.empty() ? "" : ", ") + ("\\fB" + roff(name) + "\\fR");
   }
   page += names;
-  if (option.takes_value()) page += " \\fI" + roff(value_text(option)) + "\\fR";
+  if (option.takes_value()) page += " \\fI" + roff(option.value_text()) + "\\fR";
   page += "\n" + roff(option.description);
-  if (option.repeated) page += " May be given several times.";
+  if (option.repeated) page += "; may be given several times";
   page += "\n";
 }
 
 void append_positional(const OptionRow& option, std::string& page) {
   page += ".TP\n\\fI" + roff(option.names.front()) + "\\fR";
-  if (!option.choices.empty()) page += " (" + roff(value_text(option)) + ")";
+  if (!option.choices.empty()) page += " (" + roff(option.value_text()) + ")";
   page += "\n" + roff(option.description);
-  if (option.repeated) page += " May be given several times.";
+  if (option.repeated) page += "; may be given several times";
   page += "\n";
 }
 

@@ -1,5 +1,6 @@
 #include "cli/option_tables.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 namespace landmarkdb::cli {
@@ -28,7 +29,8 @@ OptionRow row_of(const CLI::Option& option) {
   const bool flag = option.nonpositional() && option.get_items_expected_max() == 0;
   if (!flag) {
     row.choices = choices_in(type);
-    row.value = row.choices.empty() ? type : "VALUE";
+    // What follows a colon is how CLI11 describes the checks on the value.
+    row.value = row.choices.empty() ? type.substr(0, type.find(':')) : "VALUE";
     if (row.value.empty()) row.value = "VALUE";
   }
   row.description = option.get_description();
@@ -37,28 +39,19 @@ OptionRow row_of(const CLI::Option& option) {
   return row;
 }
 
-void append_rows(const CLI::App& app,
-                 const std::vector<std::string>& path,
-                 std::vector<CommandRow>& rows) {
-  CommandRow row;
-  row.path = path;
-  row.description = app.get_description();
-  row.footer = app.get_footer();
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->get_group().empty()) continue;
-    (option->nonpositional() ? row.options : row.positionals).push_back(row_of(*option));
-  }
-  const auto shown = app.get_subcommands(
+std::vector<const CLI::App*> shown_subcommands(const CLI::App& app) {
+  auto subcommands = app.get_subcommands(
       [](const CLI::App* sub) { return !sub->get_group().empty() && !sub->get_name().empty(); });
-  for (const CLI::App* sub : shown) {
-    row.subcommands.emplace_back(sub->get_name(), sub->get_description());
-  }
-  rows.push_back(std::move(row));
-  for (const CLI::App* sub : shown) {
-    std::vector<std::string> sub_path = path;
-    sub_path.push_back(sub->get_name());
-    append_rows(*sub, sub_path, rows);
-  }
+  // Every program's first subcommand, but the last that anyone looks for.
+  std::stable_partition(subcommands.begin(), subcommands.end(), [](const CLI::App* sub) {
+    return sub->get_name() != "completion";
+  });
+  return subcommands;
+}
+
+void append_rows(const CLI::App& app, std::vector<CommandRow>& rows) {
+  rows.push_back(command_row(app));
+  for (const CLI::App* sub : shown_subcommands(app)) append_rows(*sub, rows);
 }
 
 }  // namespace
@@ -69,9 +62,33 @@ std::string CommandRow::path_text() const {
   return text;
 }
 
+CommandRow command_row(const CLI::App& app) {
+  CommandRow row;
+  for (const CLI::App* at = &app; at->get_parent() != nullptr; at = at->get_parent()) {
+    row.path.insert(row.path.begin(), at->get_name());
+  }
+  row.description = app.get_description();
+  row.footer = app.get_footer();
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;
+    (option->nonpositional() ? row.options : row.positionals).push_back(row_of(*option));
+  }
+  for (const CLI::App* sub : shown_subcommands(app)) {
+    row.subcommands.emplace_back(sub->get_name(), sub->get_description());
+  }
+  return row;
+}
+
+std::string OptionRow::value_text() const {
+  if (choices.empty()) return value;
+  std::string text;
+  for (const std::string& choice : choices) text += (text.empty() ? "" : "|") + choice;
+  return text;
+}
+
 std::vector<CommandRow> command_rows(const CLI::App& app) {
   std::vector<CommandRow> rows;
-  append_rows(app, {}, rows);
+  append_rows(app, rows);
   return rows;
 }
 

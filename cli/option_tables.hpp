@@ -18,6 +18,8 @@ struct OptionRow {
   bool repeated = false;
 
   bool takes_value() const { return !value.empty(); }
+  // "FILE", or "walk|swim" where it takes one of a few.
+  std::string value_text() const;
 };
 
 // One command: the program itself, or a subcommand at any depth.
@@ -31,6 +33,9 @@ struct CommandRow {
 
   std::string path_text() const;  // "landmark add"
 };
+
+// One command by itself.
+CommandRow command_row(const CLI::App& app);
 
 // The program and all its subcommands that are not hidden, parents before children.
 std::vector<CommandRow> command_rows(const CLI::App& app);

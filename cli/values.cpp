@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cli/usage_error.hpp"
-
 #include "engine/base/error.hpp"
 #include "engine/geometry/pose.hpp"
 

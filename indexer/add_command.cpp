@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "cli/help.hpp"
-#include "cli/table.hpp"
-#include "cli/usage_error.hpp"
-#include "cli/values.hpp"
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli/help.hpp"
+#include "cli/table.hpp"
+#include "cli/usage_error.hpp"
+#include "cli/values.hpp"
 #include "indexer/add_scene.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/long_job.hpp"
@@ -147,7 +147,8 @@ ordered_json result_json(const AddResult& result, Units units, double seconds) {
                          {"sources", record.sources},
                          {"warnings", record.warnings},
                          {"generation", result.stored.generation},
-                         {"seconds", seconds}};
+                         {"seconds", seconds},
+                         {"units_guess", nullptr}};
   for (const std::string& warning : record.warnings) {
     if (warning != "units_suspect") continue;
     const auto guess = guess_units(extent_of(record.prepared.points), units, record.kind);

@@ -1,12 +1,12 @@
 #include <memory>
 #include <string>
 
-#include "cli/help.hpp"
-#include "cli/table.hpp"
-#include "cli/values.hpp"
 #include <CLI/Option.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli/help.hpp"
+#include "cli/table.hpp"
+#include "cli/values.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/scene_view.hpp"
 #include "store/store.hpp"

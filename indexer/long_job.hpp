@@ -4,7 +4,6 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
-
 #include "engine/base/run_context.hpp"
 #include "indexer/program.hpp"
 

@@ -1,9 +1,9 @@
-#include "cli/help.hpp"
-#include "cli/main_guard.hpp"
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "cli/help.hpp"
+#include "cli/main_guard.hpp"
 #include "indexer/commands.hpp"
 
 int main(int argc, char** argv) {

@@ -4,8 +4,9 @@
 #include <iostream>
 #include <thread>
 
-#include "cli/usage_error.hpp"
 #include <nlohmann/json.hpp>
+
+#include "cli/usage_error.hpp"
 
 namespace landmarkdb::indexer {
 

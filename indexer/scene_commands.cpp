@@ -3,12 +3,12 @@
 #include <utility>
 #include <vector>
 
-#include "cli/help.hpp"
-#include "cli/table.hpp"
-#include "cli/usage_error.hpp"
 #include <CLI/Option.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli/help.hpp"
+#include "cli/table.hpp"
+#include "cli/usage_error.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/scene_view.hpp"
 #include "store/store.hpp"

@@ -2,8 +2,9 @@
 
 #include <cstdio>
 
-#include "cli/table.hpp"
 #include <nlohmann/json.hpp>
+
+#include "cli/table.hpp"
 
 namespace landmarkdb::indexer {
 namespace {

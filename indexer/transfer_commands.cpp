@@ -2,11 +2,11 @@
 #include <optional>
 #include <string>
 
-#include "cli/help.hpp"
-#include "cli/table.hpp"
 #include <CLI/Option.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli/help.hpp"
+#include "cli/table.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/long_job.hpp"
 #include "indexer/new_database.hpp"

@@ -3,9 +3,9 @@
 #include <array>
 #include <cstdio>
 
-#include "cli/usage_error.hpp"
 #include <Eigen/Geometry>
 
+#include "cli/usage_error.hpp"
 #include "engine/cloud/resolution.hpp"
 
 namespace landmarkdb::indexer {

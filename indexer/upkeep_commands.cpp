@@ -2,11 +2,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/help.hpp"
-#include "cli/table.hpp"
 #include <CLI/Option.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli/help.hpp"
+#include "cli/table.hpp"
 #include "engine/base/error.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/long_job.hpp"

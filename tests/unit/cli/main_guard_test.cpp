@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cli/help.hpp"
-#include "cli/usage_error.hpp"
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -14,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/help.hpp"
+#include "cli/usage_error.hpp"
 #include "engine/base/error.hpp"
 
 namespace landmarkdb::cli {

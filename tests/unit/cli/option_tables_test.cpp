@@ -31,7 +31,7 @@ TEST(CommandRows, ListParentsBeforeChildrenAndNothingHidden) {
   const testing::SampleApp sample;
   std::vector<std::string> paths;
   for (const CommandRow& row : command_rows(sample.app)) paths.push_back(row.path_text());
-  EXPECT_THAT(paths, ElementsAre("", "completion", "go", "mark", "mark add", "mark remove"));
+  EXPECT_THAT(paths, ElementsAre("", "go", "mark", "mark add", "mark remove", "completion"));
 }
 
 TEST(CommandRows, KnowFlagsValuesAndChoices) {

@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/help.hpp"
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+
+#include "cli/help.hpp"
 
 namespace landmarkdb::cli::testing {
 

@@ -5,11 +5,11 @@
 #include <fstream>
 #include <string>
 
-#include "cli/usage_error.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "cli/usage_error.hpp"
 #include "engine/base/error.hpp"
 
 namespace landmarkdb::cli {

@@ -34,8 +34,8 @@ class NewDatabase : public ::testing::Test {
 
 TEST_F(NewDatabase, IsMadeByAChangeThatWorks) {
   change_or_create(path_, [](Store&) { return InsertResult{}; });
-  EXPECT_TRUE(Store::open_read_only(path_).list_scenes().empty());
   EXPECT_EQ(file_count(), 1U);
+  EXPECT_TRUE(Store::open_read_only(path_).list_scenes().empty());
 }
 
 TEST_F(NewDatabase, IsNotMadeByAChangeThatFails) {

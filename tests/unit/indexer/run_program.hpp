@@ -11,7 +11,7 @@ namespace landmarkdb::indexer::testing {
 // How a program is run.
 struct RunOptions {
   std::optional<std::uint64_t> max_file_bytes{};  // RLIMIT_FSIZE: a disk that is full past this
-  bool as_nobody = false;                       // gives up root's right to write anywhere
+  bool as_nobody = false;                         // gives up root's right to write anywhere
   // Standard error is a terminal, and as soon as this text appears on it the program gets the
   // signal.
   std::string signal_at{};

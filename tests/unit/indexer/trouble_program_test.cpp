@@ -198,10 +198,11 @@ TEST_F(IndexerTrouble, SigintWhileIndexingLeavesTheDatabaseAsItWas) {
   add("room");
   const auto before = contents();
   const std::vector<std::string> files_before = files();
-  for (const char* stage : {"prepare", "keypoints", "describe"}) {
+  for (const char* stage : {"keypoints", "describe"}) {
     SCOPED_TRACE(stage);
-    const RunResult result = run({"add", "room", scan(), "--voxel", "0.01", "--threads", "1"},
-                                 {.signal_at = stage, .signal = SIGINT});
+    const RunResult result =
+        run({"add", "room", scan(), "--voxel", "0.02", "--radius", "1", "--threads", "1"},
+            {.signal_at = stage, .signal = SIGINT});
     EXPECT_EQ(result.status, 130) << result.err;
     EXPECT_EQ(contents(), before);
     EXPECT_EQ(files(), files_before);
@@ -210,8 +211,9 @@ TEST_F(IndexerTrouble, SigintWhileIndexingLeavesTheDatabaseAsItWas) {
 
 TEST_F(IndexerTrouble, SigintOnANewDatabaseLeavesNone) {
   const std::vector<std::string> files_before = files();
-  const RunResult result = run({"add", "room", scan(), "--voxel", "0.01", "--threads", "1"},
-                               {.signal_at = "describe", .signal = SIGTERM});
+  const RunResult result =
+      run({"add", "room", scan(), "--voxel", "0.02", "--radius", "1", "--threads", "1"},
+          {.signal_at = "describe", .signal = SIGTERM});
   EXPECT_EQ(result.status, 130) << result.err;
   EXPECT_EQ(files(), files_before);
 }
@@ -280,9 +282,6 @@ TEST_F(IndexerTrouble, ADatabaseThatMayOnlyBeReadIsReadAndNotWritten) {
 
 TEST_F(IndexerTrouble, OutputThatCannotBeWrittenIsNotSilent) {
   add("room");
-  const RunResult result =
-      run({"list"}, {.max_file_bytes = 0});  // a pipe has no such limit: still fine
-  EXPECT_EQ(result.status, 0);
   const char* folder = std::getenv("LANDMARKDB_BIN");
   const std::string command = std::string(folder) + "/landmarkdb-indexer --db '" + db_ +
                               "' list > /dev/full 2> '" + path("err.txt") + "'";
