@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::string_view kStage = "match";
 
-// Queries that go over the stored descriptors together: 512 of them packed are 0.7 MB, which stays
-// in the second-level cache, and packing a tile of targets costs 2 % of multiplying it.
-constexpr std::size_t kQueryBlock = 512;
+// Queries that go over the stored descriptors together: 1024 of them packed are 1.4 MB, which
+// stays in the second-level cache, and packing a tile of targets vanishes beside multiplying it.
+constexpr std::size_t kQueryBlock = 1024;
 
 // Candidates of a query that wait to be evaluated exactly; a small multiple of the usual k of ten.
 constexpr std::size_t kPending = 64;
@@ -161,10 +161,12 @@ class ExactIndex : public DescriptorIndex {
     const std::size_t count = std::min(kTileTargets, size() - first);
     half_length.fill(std::numeric_limits<float>::infinity());
     if (count < kTileTargets) std::fill(packed.begin(), packed.end(), 0.0F);
-    for (std::size_t i = 0; i < count; ++i) {
-      half_length[i] = half_length_[first + i];
-      const float* row = rows_.data() + (first + i) * kShotLength;
-      for (std::size_t j = 0; j < kShotLength; ++j) packed[j * kTileTargets + i] = row[j];
+    for (std::size_t i = 0; i < count; ++i) half_length[i] = half_length_[first + i];
+    const float* rows = rows_.data() + first * kShotLength;
+    for (std::size_t j = 0; j < kShotLength; ++j) {
+      for (std::size_t i = 0; i < count; ++i) {
+        packed[j * kTileTargets + i] = rows[i * kShotLength + j];
+      }
     }
   }
 

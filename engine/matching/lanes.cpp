@@ -32,7 +32,6 @@ namespace avx512 {
 #pragma GCC pop_options
 #endif
 
-
 }  // namespace
 
 const LaneKernels* lane_kernels(const char* instruction_set) {
