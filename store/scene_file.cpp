@@ -14,6 +14,7 @@
 #include "engine/base/error.hpp"
 #include "store/names.hpp"
 #include "store/sha256.hpp"
+#include "store/utf8.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -221,7 +222,7 @@ SceneFile read_scene_file(const std::string& path, const RunContext& context) {
     const std::uint32_t manifest_bytes = read_front(reader, file, digest);
     read_segment_bytes(reader, manifest_bytes, digest, file);
   } catch (const Json::exception& error) {
-    reader.fail(std::string("its header is not as it should be: ") + error.what());
+    reader.fail("its header is not as it should be: " + valid_utf8(error.what()));
   } catch (const Error& error) {
     // Damage to this file is not damage to the database.
     if (error.code() == ErrorCode::kDataLoss) reader.fail(error.what());

@@ -7,6 +7,7 @@
 
 #include "engine/base/error.hpp"
 #include "store/sqlite_error.hpp"
+#include "store/utf8.hpp"
 
 namespace landmarkdb::sqlite {
 namespace {
@@ -160,8 +161,8 @@ double Statement::real(int column) const { return sqlite3_column_double(statemen
 std::string Statement::text(int column) const {
   const unsigned char* data = sqlite3_column_text(statement_, column);
   if (data == nullptr) return {};
-  return {reinterpret_cast<const char*>(data),
-          static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))};
+  return valid_utf8({reinterpret_cast<const char*>(data),
+                     static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))});
 }
 
 std::span<const std::byte> Statement::blob(int column) const {

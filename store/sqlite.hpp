@@ -73,7 +73,7 @@ class Statement {
   bool is_null(int column) const;
   std::int64_t integer(int column) const;
   double real(int column) const;
-  std::string text(int column) const;
+  std::string text(int column) const;  // valid UTF-8, whatever the file holds
   std::span<const std::byte> blob(int column) const;
 
  private:

@@ -1,5 +1,12 @@
 #include "store/open.hpp"
 
+#include <iostream>
+#include <stdexcept>
+#include <thread>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include "store/store.hpp"
 #include "tests/unit/store/store_support.hpp"
 
@@ -132,6 +139,59 @@ TEST(OpenDatabase, ReadingNeverChangesTheFile) {
     EXPECT_TRUE(store.check({}).ok());
   }
   EXPECT_EQ(read_file(path), before);
+}
+
+// Runs `job` in a child that has no rights of its own; true when it did and threw nothing.
+template <typename Job>
+bool without_rights(const Job& job) {
+  const pid_t child = fork();
+  if (child == 0) {
+    constexpr uid_t kNobody = 65534;
+    if (getuid() == 0 && setuid(kNobody) != 0) _exit(3);
+    int status = 0;
+    try {
+      job();
+    } catch (const std::exception& error) {
+      std::cerr << error.what() << "\n";
+      status = 1;
+    }
+    _exit(status);
+  }
+  int status = 0;
+  return waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+TEST(OpenDatabase, CanBeReadFromAFolderThatMayNotBeWritten) {
+  namespace fs = std::filesystem;
+  const TempFolder folder;
+  const std::string path = folder.file("x.db");
+  Store::create_or_open(path).insert(make_record("lobby"), {});
+  fs::permissions(path, fs::perms(0444));
+  fs::permissions(folder.path(), fs::perms(0555));
+  EXPECT_TRUE(without_rights([&] {
+    const Store store = Store::open_read_only(path);
+    if (store.load_catalog({})->entries.size() != 1) throw std::runtime_error("not read");
+  }));
+  EXPECT_TRUE(without_rights([&] {
+    const auto thrown = error_of([&] { Store::open_read_write(path).remove("lobby"); });
+    if (thrown.code != ErrorCode::kPermissionDenied) throw std::runtime_error(thrown.message);
+  }));
+  fs::permissions(folder.path(), fs::perms(0755));
+}
+
+TEST(OpenDatabase, OfTwoThatMakeItAtOnceBothGetIt) {
+  for (int round = 0; round < 10; ++round) {
+    const TempFolder folder;
+    const std::string path = folder.file("x.db");
+    std::vector<std::jthread> makers;
+    for (const char* name : {"a", "b", "c"}) {
+      makers.emplace_back([&path, name] {
+        EXPECT_NO_THROW(Store::create_or_open(path).insert(make_record(name), {}));
+      });
+    }
+    makers.clear();
+    EXPECT_EQ(Store::open_read_only(path).list_scenes().size(), 3U);
+  }
 }
 
 TEST(OpenDatabase, AWriterOfAnotherSizeLimitIsStopped) {
