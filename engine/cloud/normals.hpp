@@ -11,11 +11,11 @@ namespace landmarkdb {
 
 // Fills `cloud.normals` by plane fits to the neighbours within `radius_m` (at least 5 of them, else
 // the 5 nearest), turned towards each point's viewpoint. Where no viewpoint is known they are
-// turned consistently instead (propagated along a minimum spanning tree of the neighbour graph by
-// normal agreement, Hoppe 1992; each connected part's sign is the one that points away from its
-// inside, or towards the scene's centre for a part that encloses it). Returns true when viewpoints
-// decided. A point without a defined plane (collinear neighbours) gets the direction towards its
-// viewpoint, or +z.
+// turned consistently instead (see orient_consistently). Returns true when viewpoints decided. A
+// point without a defined plane (collinear neighbours) gets the direction towards its viewpoint, or
+// +z. `index` is over `cloud.points`. The same for any number of threads. Throws
+// Error{kInvalidArgument} for a radius that is not positive and finite, and what context.check
+// throws.
 bool estimate_normals(PointCloud& cloud,
                       double radius_m,
                       const SpatialIndex& index,

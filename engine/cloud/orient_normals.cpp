@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "engine/base/parallel.hpp"
@@ -98,36 +100,52 @@ struct Part {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Vector3f low = Eigen::Vector3f::Constant(std::numeric_limits<float>::max());
   Eigen::Vector3f high = Eigen::Vector3f::Constant(std::numeric_limits<float>::lowest());
-  double away = 0.0;  // sum of cosines between normals and the direction away from its reference
+  // Sums of cosines between normals and the directions away from a centre.
+  double from_own_centre = 0.0;
+  double from_scene_centre = 0.0;
 };
 
-// Which parts the normals of have to be turned round once more.
+double cosine_from(const Eigen::Vector3d& centre,
+                   const Eigen::Vector3f& point,
+                   const Eigen::Vector3f& normal) {
+  const Eigen::Vector3d away = point.cast<double>() - centre;
+  const double distance = away.norm();
+  return distance > 0.0 ? normal.cast<double>().dot(away) / distance : 0.0;
+}
+
+// Parts by the index of their root; `scene` gets the same figures of all points.
 std::vector<Part> measure_parts(std::span<const Eigen::Vector3f> points,
                                 std::span<const Eigen::Vector3f> normals,
-                                const std::vector<std::uint32_t>& part_of) {
+                                const std::vector<std::uint32_t>& part_of,
+                                Part& scene) {
   std::vector<Part> parts(points.size());
-  Eigen::Vector3d scene_sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    Part& part = parts[part_of[i]];
-    ++part.points;
-    part.sum += points[i].cast<double>();
-    part.low = part.low.cwiseMin(points[i]);
-    part.high = part.high.cwiseMax(points[i]);
-    scene_sum += points[i].cast<double>();
+    for (Part* part : {&parts[part_of[i]], &scene}) {
+      ++part->points;
+      part->sum += points[i].cast<double>();
+      part->low = part->low.cwiseMin(points[i]);
+      part->high = part->high.cwiseMax(points[i]);
+    }
   }
-  const Eigen::Vector3d scene_centre = scene_sum / static_cast<double>(points.size());
+  const Eigen::Vector3d scene_centre = scene.sum / static_cast<double>(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     Part& part = parts[part_of[i]];
-    const bool is_object = (part.high - part.low).maxCoeff() <= kLargestObject_m;
-    const Eigen::Vector3d reference =
-        is_object ? Eigen::Vector3d(part.sum / static_cast<double>(part.points)) : scene_centre;
-    const Eigen::Vector3d away = points[i].cast<double>() - reference;
-    const double distance = away.norm();
-    if (!(distance > 0.0)) continue;
-    const double cosine = normals[i].cast<double>().dot(away) / distance;
-    part.away += is_object ? cosine : -cosine;
+    const Eigen::Vector3d own_centre = part.sum / static_cast<double>(part.points);
+    part.from_own_centre += cosine_from(own_centre, points[i], normals[i]);
+    part.from_scene_centre += cosine_from(scene_centre, points[i], normals[i]);
   }
   return parts;
+}
+
+bool is_object(const Part& part) { return (part.high - part.low).maxCoeff() <= kLargestObject_m; }
+
+// Whether a part's normals look away from where they should.
+bool wants_turn(const Part& part, const Part& scene) {
+  // Mean cosine above which a part bulges enough to have an inside; a sphere has 1, a plane 0.
+  constexpr double kBulges = 0.4;
+  const bool bulges = std::abs(part.from_own_centre) > kBulges * static_cast<double>(part.points);
+  if (is_object(part) && bulges) return part.from_own_centre < 0.0;
+  return is_object(scene) ? part.from_scene_centre < 0.0 : part.from_scene_centre > 0.0;
 }
 
 }  // namespace
@@ -152,9 +170,10 @@ void orient_consistently(std::span<const Eigen::Vector3f> points,
     part_of[i] = root.part;
     if (root.flipped) normals[i] = -normals[i];
   }
-  const std::vector<Part> parts = measure_parts(points, normals, part_of);
+  Part scene;
+  const std::vector<Part> parts = measure_parts(points, normals, part_of, scene);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (parts[part_of[i]].away < 0.0) normals[i] = -normals[i];
+    if (wants_turn(parts[part_of[i]], scene)) normals[i] = -normals[i];
   }
 }
 

@@ -1,8 +1,9 @@
 #include "engine/cloud/prepare_cloud.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 
@@ -42,8 +43,8 @@ void check_spread(const std::vector<Eigen::Vector3f>& points) {
   }
 }
 
-// Normals that came with the cloud are trusted unless they look away from known viewpoints.
-bool normals_face_viewpoints(const PointCloud& cloud) {
+// Whether normals that came with a cloud look towards the viewpoints it has.
+bool face_viewpoints(const PointCloud& cloud) {
   constexpr double kShare = 0.9;  // of the points; the rest may graze
   std::size_t facing = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -51,6 +52,36 @@ bool normals_face_viewpoints(const PointCloud& cloud) {
     if (cloud.normals[i].dot(cloud.viewpoints[which] - cloud.points[i]) >= 0.0F) ++facing;
   }
   return static_cast<double>(facing) >= kShare * static_cast<double>(cloud.size());
+}
+
+// Whether normals that came with a cloud were turned to one side: among parallel neighbours few are
+// opposite. Clouds with oriented normals have 0 to 7 % of these, plane fits left as they fell 30 to
+// 50 %.
+bool share_a_side(const PointCloud& cloud, const SpatialIndex& index) {
+  constexpr std::size_t kLooked = 20'000;
+  constexpr std::size_t kNeighbours = 7;  // the point and six around it
+  constexpr float kParallel = 0.7F;
+  constexpr double kMostOpposite = 0.2;
+  const std::size_t step = cloud.size() / kLooked + 1;
+  std::size_t parallel = 0;
+  std::size_t opposite = 0;
+  std::vector<Neighbour> neighbours;
+  for (std::size_t i = 0; i < cloud.size(); i += step) {
+    index.nearest(cloud.points[i], kNeighbours, neighbours);
+    for (const Neighbour& neighbour : neighbours) {
+      const float cosine = cloud.normals[i].dot(cloud.normals[neighbour.index]);
+      if (neighbour.index == i || std::abs(cosine) < kParallel) continue;
+      ++parallel;
+      if (cosine < 0.0F) ++opposite;
+    }
+  }
+  return static_cast<double>(opposite) <= kMostOpposite * static_cast<double>(parallel);
+}
+
+// Whether the cloud came with normals that can be used as they are.
+bool own_normals_hold(const PointCloud& cloud, const SpatialIndex& index) {
+  if (cloud.normals.size() != cloud.size()) return false;
+  return cloud.viewpoints.empty() ? share_a_side(cloud, index) : face_viewpoints(cloud);
 }
 
 }  // namespace
@@ -63,10 +94,9 @@ PreparedCloud prepare_cloud(const PointCloud& cloud,
   PointCloud thinned = thin(cloud, options.voxel_m);
   check_spread(thinned.points);
   context.check("preprocess");
-  bool oriented = true;  // normals that came with the cloud were turned by whoever made them
-  const bool has_normals = thinned.normals.size() == thinned.size();
-  if (!has_normals || (!thinned.viewpoints.empty() && !normals_face_viewpoints(thinned))) {
-    const SpatialIndex index(thinned.points);
+  const SpatialIndex index(thinned.points);
+  bool oriented = true;
+  if (!own_normals_hold(thinned, index)) {
     oriented = estimate_normals(thinned, options.normal_radius_m, index, context);
   }
   PreparedCloud prepared;

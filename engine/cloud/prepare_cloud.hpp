@@ -10,9 +10,10 @@ struct PrepareOptions {
   double normal_radius_m = 0.0;  // > 0
 };
 
-// Thins a sanitised cloud to one point a voxel and gives each a unit normal (the cloud's own where
-// it has them and a viewpoint does not contradict). `counts` comes from sanitise. Throws
-// Error{kInvalidArgument} when fewer than 4 points are left, or all lie on one line.
+// Thins a sanitised cloud to one point a voxel and gives each a unit normal: the cloud's own where
+// it has them, a viewpoint does not contradict and neighbours are turned to the same side; else
+// estimated ones. `counts` comes from sanitise. Throws Error{kInvalidArgument} when fewer than 4
+// points are left, or all lie on one line.
 PreparedCloud prepare_cloud(const PointCloud& cloud,
                             const CloudCounts& counts,
                             const PrepareOptions& options,

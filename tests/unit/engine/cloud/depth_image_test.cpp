@@ -34,8 +34,7 @@ Camera camera() {
 }
 
 void append_bytes(png_structp png, png_bytep data, std::size_t size) {
-  static_cast<std::string*>(png_get_io_ptr(png))
-      ->append(reinterpret_cast<const char*>(data), size);
+  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(data), size);
 }
 
 std::string make_png(int bits, int colour_type, std::uint16_t depth) {

@@ -25,7 +25,8 @@ TEST(EstimateNormals, FitsASphereAndTurnsToTheViewpoint) {
 TEST(EstimateNormals, TurnsEachPointToItsOwnViewpoint) {
   PointCloud cloud;
   for (int i = 0; i < 400; ++i) {
-    cloud.points.emplace_back(0.1F * static_cast<float>(i % 20), 0.1F * static_cast<float>(i / 20), 0);
+    cloud.points.emplace_back(
+        0.1F * static_cast<float>(i % 20), 0.1F * static_cast<float>(i / 20), 0);
     cloud.viewpoint_index.push_back(i / 20 < 10 ? 0 : 1);
   }
   cloud.viewpoints = {{1, 1, 5}, {1, 1, -5}};

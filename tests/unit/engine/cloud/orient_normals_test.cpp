@@ -28,8 +28,9 @@ TEST(OrientConsistently, TurnsARoomInwards) {
   PointCloud cloud = testing::make_room({6, 5, 3}, 0.08F);
   estimate_normals(cloud, 0.2, SpatialIndex(cloud.points), {});
   const Eigen::Vector3f centre(3.0F, 2.5F, 1.5F);
-  EXPECT_GT(share_facing(cloud, [&](const Eigen::Vector3f& p) { return Eigen::Vector3f(centre - p); }),
-            0.999);
+  EXPECT_GT(
+      share_facing(cloud, [&](const Eigen::Vector3f& p) { return Eigen::Vector3f(centre - p); }),
+      0.999);
 }
 
 TEST(OrientConsistently, TurnsABallInARoomOutwards) {

@@ -86,7 +86,8 @@ TEST(PrepareCloud, RefusesWhatIsNoSurface) {
 TEST(PrepareCloud, TakesAPlaneAlone) {
   PointCloud cloud;
   for (int i = 0; i < 2500; ++i) {
-    cloud.points.emplace_back(0.1F * static_cast<float>(i % 50), 0.1F * static_cast<float>(i / 50), 1);
+    cloud.points.emplace_back(
+        0.1F * static_cast<float>(i % 50), 0.1F * static_cast<float>(i / 50), 1);
   }
   cloud.viewpoints = {Eigen::Vector3f::Zero()};
   const PreparedCloud prepared = prepare_cloud(cloud, {}, kOptions, {});

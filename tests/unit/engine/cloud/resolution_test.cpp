@@ -23,9 +23,8 @@ TEST(MeasureScale, CountsEachPieceOfSurfaceOnce) {
   PointCloud cloud = testing::make_room({6, 4, 3}, 0.05F);
   const std::size_t even = cloud.size();
   for (int i = 0; i < 200 * 200; ++i) {
-    cloud.points.emplace_back(0.005F * static_cast<float>(i % 200),
-                              0.005F * static_cast<float>(i / 200),
-                              0.0F);
+    cloud.points.emplace_back(
+        0.005F * static_cast<float>(i % 200), 0.005F * static_cast<float>(i / 200), 0.0F);
   }
   EXPECT_GT(cloud.size() - even, even / 2);
   EXPECT_NEAR(measure_scale(cloud).spacing_m, 0.05, 0.01);

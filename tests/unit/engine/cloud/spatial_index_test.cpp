@@ -68,9 +68,8 @@ TEST(SpatialIndex, BreaksTiesByTheLowerIndex) {
   std::vector<Eigen::Vector3f> points;
   for (int copy = 0; copy < 2; ++copy) {
     for (int i = 0; i < 1000; ++i) {
-      points.emplace_back(static_cast<float>(i % 10),
-                          static_cast<float>(i / 10 % 10),
-                          static_cast<float>(i / 100));
+      points.emplace_back(
+          static_cast<float>(i % 10), static_cast<float>(i / 10 % 10), static_cast<float>(i / 100));
     }
   }
   const SpatialIndex index(points);
