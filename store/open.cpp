@@ -112,6 +112,11 @@ void prepare_for_writing(const Database& database, const StoreOptions& options) 
   }
 }
 
+bool folder_may_be_written(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return access(folder.empty() ? "." : folder.c_str(), W_OK) == 0;
+}
+
 // A database in WAL mode needs its two companion files even to be read; where the folder does not
 // allow them and no log is waiting, the file alone is the whole truth.
 std::unique_ptr<Database> open_for_reading(const std::string& path, const StoreOptions& options) {
@@ -119,16 +124,12 @@ std::unique_ptr<Database> open_for_reading(const std::string& path, const StoreO
   try {
     database->integer("SELECT count(*) FROM sqlite_schema");
     return database;
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::kUnavailable && error.code() != ErrorCode::kPermissionDenied) {
-      throw;
-    }
-    std::error_code ignored;
-    const auto wal_bytes = fs::file_size(path + "-wal", ignored);
-    if (ignored || wal_bytes == 0) {
-      return std::make_unique<Database>(path, OpenMode::kImmutable, options.busy_timeout);
-    }
-    throw;
+  } catch (const Error&) {
+    std::error_code missing;
+    const auto wal_bytes = fs::file_size(path + "-wal", missing);
+    const bool log_waits = !missing && wal_bytes > 0;
+    if (folder_may_be_written(path) || log_waits) throw;
+    return std::make_unique<Database>(path, OpenMode::kImmutable, options.busy_timeout);
   }
 }
 
@@ -199,7 +200,7 @@ MigrationReport migrate_database(const std::string& path,
   return report;
 }
 
-std::vector<std::string> location_warnings(const std::string& path) {
+std::vector<std::string> location_warnings(const Database& database) {
   // From linux/magic.h and the file systems' own sources.
   static constexpr std::array<std::pair<std::uint32_t, std::string_view>, 8> kNetworkFileSystems{
       {{0x6969U, "NFS"},
@@ -210,16 +211,23 @@ std::vector<std::string> location_warnings(const std::string& path) {
        {0x00c36400U, "Ceph"},
        {0x0bd00bd0U, "Lustre"},
        {0x5346414fU, "AFS"}}};
+  const std::string& path = database.path();
+  std::vector<std::string> warnings;
+  if (database.mode() == OpenMode::kImmutable) {
+    warnings.push_back(quoted(path) +
+                       " lies in a folder that may not be written, so changes by other processes "
+                       "are not seen: open it again after one");
+  }
   struct statfs info {};
-  if (path == kMemory || statfs(path.c_str(), &info) != 0) return {};
+  if (path == kMemory || statfs(path.c_str(), &info) != 0) return warnings;
   for (const auto& [magic, name] : kNetworkFileSystems) {
     if (static_cast<std::uint32_t>(info.f_type) == magic) {
-      return {quoted(path) + " lies on a network file system (" + std::string(name) +
-              "), where file locks cannot be relied upon: use it from one machine at a time, or "
-              "better keep it on a local disk"};
+      warnings.push_back(quoted(path) + " lies on a network file system (" + std::string(name) +
+                         "), where file locks cannot be relied upon: use it from one machine at a "
+                         "time, or better keep it on a local disk");
     }
   }
-  return {};
+  return warnings;
 }
 
 }  // namespace landmarkdb

@@ -24,7 +24,8 @@ MigrationReport migrate_database(const std::string& path,
                                  std::span<const Migration> migrations,
                                  const RunContext& context);
 
-// A sentence where the file lies on a network file system, whose locks cannot be relied upon.
-std::vector<std::string> location_warnings(const std::string& path);
+// Sentences about where the file lies: a network file system, whose locks cannot be relied upon; a
+// folder in which changes by others cannot be seen.
+std::vector<std::string> location_warnings(const sqlite::Database& database);
 
 }  // namespace landmarkdb

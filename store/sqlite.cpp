@@ -48,7 +48,7 @@ std::string immutable_uri(const std::string& path) {
 }  // namespace
 
 Database::Database(const std::string& path, OpenMode mode, std::chrono::milliseconds busy_timeout)
-    : path_(path) {
+    : path_(path), mode_(mode) {
   // SQLite gives some names a meaning of their own; ":memory:" is the one we want.
   const std::string plain =
       !path.empty() && path.front() == ':' && path != ":memory:" ? "./" + path : path;

@@ -42,10 +42,12 @@ class Database {
   bool in_transaction() const;
 
   const std::string& path() const { return path_; }
+  OpenMode mode() const { return mode_; }
   sqlite3* handle() const { return handle_; }
 
  private:
   std::string path_;
+  OpenMode mode_;
   sqlite3* handle_ = nullptr;
 };
 

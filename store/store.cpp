@@ -31,7 +31,7 @@ struct Store::State {
   State(std::unique_ptr<sqlite::Database> opened, bool for_reading)
       : database(std::move(opened)),
         read_only(for_reading),
-        warnings(location_warnings(database->path())) {}
+        warnings(location_warnings(*database)) {}
 
   const sqlite::Database& reader() const { return *database; }
   const sqlite::Database& writer() const {

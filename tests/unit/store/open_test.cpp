@@ -171,6 +171,7 @@ TEST(OpenDatabase, CanBeReadFromAFolderThatMayNotBeWritten) {
   EXPECT_TRUE(without_rights([&] {
     const Store store = Store::open_read_only(path);
     if (store.load_catalog({})->entries.size() != 1) throw std::runtime_error("not read");
+    if (store.warnings().size() != 1) throw std::runtime_error("not warned");
   }));
   EXPECT_TRUE(without_rights([&] {
     const auto thrown = error_of([&] { Store::open_read_write(path).remove("lobby"); });
@@ -204,9 +205,11 @@ TEST(OpenDatabase, AWriterOfAnotherSizeLimitIsStopped) {
   EXPECT_TRUE(store.check({}).ok());
 }
 
-TEST(LocationWarnings, ALocalFileHasNone) {
-  EXPECT_TRUE(location_warnings(":memory:").empty());
-  EXPECT_TRUE(location_warnings("/no/such/file").empty());
+TEST(LocationWarnings, TellThatChangesCannotBeSeen) {
+  const TempFolder folder;
+  EXPECT_TRUE(Store::create_or_open(folder.file("x.db")).warnings().empty());
+  const Database database(folder.file("x.db"), OpenMode::kImmutable, 0ms);
+  EXPECT_THAT(location_warnings(database), ::testing::ElementsAre(HasSubstr("may not be written")));
 }
 
 }  // namespace
