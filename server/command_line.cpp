@@ -4,7 +4,6 @@
 
 #include "cli/help.hpp"
 #include "cli/usage_error.hpp"
-
 #include "server/hello.hpp"
 
 namespace landmarkdb {

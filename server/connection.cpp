@@ -48,7 +48,7 @@ void Connection::on_read(const error_code& error, std::size_t bytes) {
   if (error) {
     input_ended_ = true;
     if (error != boost::asio::error::eof || phase_ == Phase::kLingering) {
-      cut();
+      cut(error == boost::asio::error::eof ? "" : error.message());
     } else if (phase_ == Phase::kOpen) {
       on_input_end();
     }
@@ -145,7 +145,7 @@ void Connection::on_timer() {
 void Connection::send_frame(std::string frame) {
   if (phase_ != Phase::kOpen) return;
   if (outbox_bytes_ > limits_.max_outbox_bytes) {
-    cut();
+    cut("the client does not read its answers");
     return;
   }
   outbox_bytes_ += frame.size();
@@ -159,7 +159,9 @@ void Connection::write_front() {
   write_timer_.expires_after(limits_.write_timeout +
                              std::chrono::duration_cast<Clock::duration>(transfer));
   write_timer_.async_wait(bound([this](const error_code& error) {
-    if (!error && write_timer_.expiry() <= Clock::now()) cut();
+    if (!error && write_timer_.expiry() <= Clock::now()) {
+      cut("the client takes its answer too slowly");
+    }
   }));
   boost::asio::async_write(socket_,
                            boost::asio::buffer(outbox_.front()),
@@ -167,7 +169,7 @@ void Connection::write_front() {
                              if (phase_ == Phase::kClosed) return;
                              write_timer_.cancel();
                              if (error) {
-                               cut();
+                               cut(error.message());
                                return;
                              }
                              outbox_bytes_ -= outbox_.front().size();
@@ -206,7 +208,7 @@ void Connection::linger() {
   }));
 }
 
-void Connection::cut() {
+void Connection::cut(std::string why) {
   if (phase_ == Phase::kClosed) return;
   phase_ = Phase::kClosed;
   error_code ignored;
@@ -214,7 +216,7 @@ void Connection::cut() {
   read_timer_.cancel();
   write_timer_.cancel();
   frame_memory_ = {};
-  on_closed();
+  on_closed(why);
 }
 
 }  // namespace landmarkdb

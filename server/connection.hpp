@@ -40,8 +40,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void send_frame(std::string frame);
   // Lets what is waiting go out, then ends. Nothing more is read but to throw it away.
   void close_after_sending();
-  // Ends at once.
-  void cut();
+  // Ends at once. `why` is for the log; empty where there is nothing to say.
+  void cut(std::string why = {});
 
  protected:
   // A whole frame; the view is valid during the call only. `memory` is held for long frames.
@@ -53,8 +53,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   virtual void on_input_end() = 0;
   // No frames for the idle time.
   virtual void on_idle() = 0;
-  // The socket is gone. Called once.
-  virtual void on_closed() = 0;
+  // The socket is gone; `why` as told to cut(). Called once.
+  virtual void on_closed(const std::string& why) = 0;
   // True while answers are owed: such a connection is not idle.
   virtual bool busy() const = 0;
 

@@ -4,7 +4,6 @@
 #include <fstream>
 
 #include "cli/version.hpp"
-
 #include "engine/base/error.hpp"
 #include "server/request_handler.hpp"
 #include "store/store.hpp"

@@ -177,7 +177,7 @@ HostPort parse_host_port(const std::string& text) {
   }
   if (parts.host.size() > 2 && parts.host.front() == '[' && parts.host.back() == ']') {
     parts.host = parts.host.substr(1, parts.host.size() - 2);
-  } else if (parts.host.find(':') != std::string::npos) {
+  } else if (parts.host.find_first_of(":[]") != std::string::npos) {
     parts.host.clear();  // an IPv6 address without brackets: which colon ends it is a guess
   }
   const bool digits = !parts.port.empty() && parts.port.size() <= 5 &&

@@ -1,7 +1,6 @@
 #include <iostream>
 
 #include "cli/main_guard.hpp"
-
 #include "server/command_line.hpp"
 #include "server/server.hpp"
 

@@ -29,13 +29,13 @@ struct ConnectionLimits {
 };
 
 struct ServerOptions {
-  std::string db;
+  std::string db{};
   std::string listen = "127.0.0.1:7071";  // HOST:PORT, [IPv6]:PORT; "none": no TCP. Port 0: any.
-  std::string unix_path;                  // empty: none
+  std::string unix_path{};                // empty: none
   int threads = 0;                        // 0: one a core
   bool read_only = false;
   bool allow_insecure = false;
-  std::string token;  // empty: none is asked for
+  std::string token{};  // empty: none is asked for
   std::size_t max_message_bytes = kDefaultMaxMessageBytes;
   std::size_t max_connections = 128;
   std::chrono::milliseconds deadline{60'000};  // of a query, waiting included
@@ -48,10 +48,10 @@ struct ServerOptions {
   // From the wish to stop: requests still open are cancelled, then connections cut.
   std::chrono::milliseconds stop_cancel_after{2'000};
   std::chrono::milliseconds stop_cut_after{4'000};
-  std::string port_file;  // gets the TCP port as text once it is known; empty: none
+  std::string port_file{};  // gets the TCP port as text once it is known; empty: none
   LogLevel log_level = LogLevel::kInfo;
   bool log_json = false;
-  ConnectionLimits connection;
+  ConnectionLimits connection{};
 };
 
 }  // namespace landmarkdb

@@ -5,9 +5,9 @@
 #include <new>
 #include <utility>
 
-#include "cli/version.hpp"
 #include <google/protobuf/descriptor.h>
 
+#include "cli/version.hpp"
 #include "engine/base/error.hpp"
 #include "server/convert_query.hpp"
 #include "server/process_memory.hpp"

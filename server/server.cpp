@@ -13,6 +13,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <google/protobuf/stubs/logging.h>
 
 #include "engine/base/error.hpp"
 #include "server/dispatcher.hpp"
@@ -227,7 +228,10 @@ void Server::State::cut_all() {
 }
 
 Server::Server(const ServerOptions& options, Logger& log)
-    : state_(std::make_unique<State>(options, log)) {}
+    : state_(std::make_unique<State>(options, log)) {
+  // Protobuf would print a line for each malformed message; ours go through the log.
+  google::protobuf::SetLogHandler(nullptr);
+}
 
 Server::~Server() {
   stop();

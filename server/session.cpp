@@ -70,7 +70,7 @@ void Session::cancel_requests() {
 }
 
 void Session::close_now() {
-  boost::asio::dispatch(executor(), [self = self()] { self->cut(); });
+  boost::asio::dispatch(executor(), [self = self()] { self->cut("the server is stopping"); });
 }
 
 void Session::on_frame(std::string_view payload, MemoryBudget::Lease memory) {
@@ -253,10 +253,12 @@ void Session::close_if_done() {
   if ((leaving_ || input_ended_) && requests_.empty()) close_after_sending();
 }
 
-void Session::on_closed() {
+void Session::on_closed(const std::string& why) {
   for (auto& entry : requests_) entry.second.job->stop.request_stop();
   requests_.clear();
-  services_.log.write(LogLevel::kDebug, "closed", {{"connection", id_}});
+  std::vector<LogField> fields = {{"connection", id_}};
+  if (!why.empty()) fields.push_back({"reason", why});
+  services_.log.write(why.empty() ? LogLevel::kDebug : LogLevel::kInfo, "closed", fields);
   if (on_closed_) std::exchange(on_closed_, nullptr)();
 }
 

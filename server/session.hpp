@@ -54,7 +54,7 @@ class Session final : public Connection {
   void on_broken(ErrorCode code, const std::string& message) override;
   void on_input_end() override;
   void on_idle() override;
-  void on_closed() override;
+  void on_closed(const std::string& why) override;
   bool busy() const override { return !requests_.empty(); }
 
   void hello(const v1::Envelope& envelope);
