@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kPoseNumbers = 16;
 // 16 numbers with all their digits, comments and a licence header fit easily.
-constexpr std::size_t kMaxPoseFileBytes = 64 * 1024;
+constexpr std::size_t kMaxPoseFileBytes = 65'536;
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r\n";
@@ -105,7 +105,7 @@ Eigen::Vector3d parse_vector3(std::string_view text, const std::string& option) 
 }
 
 Eigen::Vector3d parse_direction(std::string_view text, const std::string& option) {
-  const Eigen::Vector3d direction = parse_vector3(text, option);
+  Eigen::Vector3d direction = parse_vector3(text, option);
   if (direction.stableNorm() <= 0.0) throw UsageError(option, "0,0,0 is no direction");
   return direction;
 }
@@ -116,8 +116,8 @@ Box parse_box(std::string_view text, const std::string& option) {
     throw UsageError(option,
                      in_quotes(text) + " is not six finite numbers xmin,ymin,zmin,xmax,ymax,zmax");
   }
-  const Box box{Eigen::Vector3d(numbers[0], numbers[1], numbers[2]),
-                Eigen::Vector3d(numbers[3], numbers[4], numbers[5])};
+  Box box{Eigen::Vector3d(numbers[0], numbers[1], numbers[2]),
+          Eigen::Vector3d(numbers[3], numbers[4], numbers[5])};
   if ((box.min_m.array() >= box.max_m.array()).any()) {
     throw UsageError(option, in_quotes(text) + " is empty: each minimum must be below its maximum");
   }

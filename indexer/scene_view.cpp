@@ -44,6 +44,7 @@ std::string joined(const std::vector<std::string>& parts) {
 
 std::string tags_text(const std::map<std::string, std::string>& tags) {
   std::vector<std::string> parts;
+  parts.reserve(tags.size());
   for (const auto& [key, value] : tags) parts.push_back(key + '=' + value);
   return joined(parts);
 }
