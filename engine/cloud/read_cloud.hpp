@@ -28,11 +28,13 @@ struct ReadOptions {
 //
 // Coordinates too far from zero for float keep their precision: `origin` takes a round offset. NaN
 // points are kept (see sanitise); an organised cloud stays organised. A viewpoint in a PCD header
-// is applied: `points` and `viewpoints` are in the file's world frame.
+// is applied: `points` and `viewpoints` are in the file's world frame. The identity viewpoint,
+// which nearly every PCD file has, is believed of organised clouds only. PLY has viewpoints where
+// write_cloud put them. A mesh's samples have normals when its vertices have, or when it is closed.
 //
 // Throws Error{kInvalidArgument} that names the file, what was seen and what was wanted:
 // unreadable, truncated, a header that promises more than the file holds, an unknown format, no
-// points.
+// points; Error{kResourceExhausted} without the memory.
 PointCloud read_cloud(const std::filesystem::path& path, const ReadOptions& options);
 
 // The same for a file that is in memory. `name` is what messages call it; its extension helps where

@@ -25,8 +25,7 @@ struct Camera {
 // image_height, camera_matrix, distortion_model, distortion_coefficients, depth_scale), or JSON
 // {width, height, fx, fy, cx, cy, dist, depth_scale}. Other keys are skipped.
 //
-// Throws Error{kInvalidArgument} that names the file, the key, what was seen and what was wanted;
-// Error{kNotFound} where there is no file.
+// Throws Error{kInvalidArgument} that names the file, the key, what was seen and what was wanted.
 Camera read_camera(const std::filesystem::path& path);
 
 // The same for a file that is in memory; `name` is what messages call it.

@@ -229,15 +229,11 @@ Camera parse_camera(const std::string& text, std::string_view name) {
 Camera read_camera(const std::filesystem::path& path) {
   const std::string name = path.string();
   std::error_code ignored;
-  const bool there = std::filesystem::exists(path, ignored);
-  if (there && !std::filesystem::is_regular_file(path, ignored)) {
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
     refuse(name, "is not a regular file");
   }
   std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    throw Error(there ? ErrorCode::kInvalidArgument : ErrorCode::kNotFound,
-                name + ": cannot be read: " + std::strerror(errno));
-  }
+  if (!in) refuse(name, std::string("cannot be read: ") + std::strerror(errno));
   // One byte more than allowed is enough to see that a file is too long.
   std::string text(kLongestFile + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));

@@ -179,7 +179,7 @@ TEST(ReadCamera, ReadsFromDiskAndSaysWhatIsMissing) {
     read_camera(path);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kNotFound);
+    EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);
   }
   EXPECT_THROW(read_camera("/dev/zero"), Error);
 }
