@@ -83,6 +83,14 @@ void check(const PlaceOptions& options) {
   }
 }
 
+std::string name_of(const PlaceOptions& options) {
+  std::string name =
+      std::string(place_type_name(options.type)) + "-" + std::to_string(options.seed);
+  if (options.twin != 0) name += "-twin-" + std::to_string(options.twin);
+  if (options.day != 0) name += "-day-" + std::to_string(options.day);
+  return name;
+}
+
 // Another stream of random numbers for each purpose, storey and day.
 std::uint64_t stream(std::uint64_t seed, std::uint64_t purpose, std::uint64_t a, std::uint64_t b) {
   return Random(Random(Random(seed * 31 + purpose).next() ^ (a + 1)).next() ^ (b + 1)).next();
@@ -90,7 +98,8 @@ std::uint64_t stream(std::uint64_t seed, std::uint64_t purpose, std::uint64_t a,
 
 Storey make_storey(const PlaceOptions& options, int floor) {
   const bool own = options.copies == FloorCopies::kLookAlike;
-  const std::uint64_t which = own ? static_cast<std::uint64_t>(floor) : 0;
+  const std::uint64_t which =
+      options.twin * kMaxFloors + (own ? static_cast<std::uint64_t>(floor) : 0);
   Storey storey{.options = options,
                 .mesh = {},
                 .plan = Random(stream(options.seed, 1, 0, 0)),
@@ -191,8 +200,8 @@ Place make_place(const PlaceOptions& options) {
   place.options = options;
   if (options.floors == 0) place.options.floors = entry(options.type).floors;
   if (options.stations == 0) place.options.stations = entry(options.type).stations;
-  place.name = std::string(place_type_name(options.type)) + "-" + std::to_string(options.seed);
-  Random pose(stream(options.seed, 5, 0, 0));
+  place.name = name_of(options);
+  Random pose(stream(options.seed, 5, options.twin, 0));
   const Eigen::Isometry3d T_scene_building =
       at(pose.uniform(-3.0, 3.0), pose.uniform(-3.0, 3.0), 0.0, pose.uniform(-3.1, 3.1));
   for (int floor = 0; floor < place.options.floors; ++floor) {

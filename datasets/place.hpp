@@ -42,6 +42,8 @@ struct PlaceOptions {
   FloorCopies copies = FloorCopies::kLookAlike;
   // Another number: the same building on another day; loose clutter stands elsewhere.
   std::uint64_t day = 0;
+  // Another number: another building of the same plan; furniture and clutter differ.
+  std::uint64_t twin = 0;
   int stations = 0;  // of the laser scanner, per floor; 0: as many as suit the type
 };
 

@@ -1,0 +1,79 @@
+#include "datasets/picture/storey_cut.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace landmarkdb::datasets {
+namespace {
+
+constexpr float kBin_m = 0.05F;
+constexpr float kReach_m = 8.0F;  // points further off in plan may belong to another room
+
+// The height in (low, high) around which most points near the sensor lie.
+float densest(std::span<const Eigen::Vector3f> points,
+              const Eigen::Vector3f& sensor,
+              float low,
+              float high,
+              float otherwise) {
+  std::vector<int> bins(static_cast<std::size_t>((high - low) / kBin_m) + 1, 0);
+  for (const Eigen::Vector3f& p : points) {
+    if (!(p.z() > low && p.z() < high)) continue;
+    if ((p - sensor).head<2>().norm() > kReach_m) continue;
+    ++bins[static_cast<std::size_t>((p.z() - low) / kBin_m)];
+  }
+  const auto most = std::max_element(bins.begin(), bins.end());
+  if (*most == 0) return otherwise;
+  return low + kBin_m * (static_cast<float>(most - bins.begin()) + 0.5F);
+}
+
+}  // namespace
+
+StoreyCut find_storey(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& sensor) {
+  constexpr float kMargin_m = 0.15F;
+  constexpr float kPlanHeight_m = 2.3F;  // a cut above heads and doors, below most lamps
+  const float floor =
+      densest(points, sensor, sensor.z() - 2.6F, sensor.z() - 0.3F, sensor.z() - 1.5F);
+  const float ceiling =
+      densest(points, sensor, floor + 2.0F, floor + 3.6F, floor + kPlanHeight_m + kMargin_m);
+  return {floor - kMargin_m, std::min(floor + kPlanHeight_m, ceiling - kMargin_m)};
+}
+
+double straighten_rad(std::span<const Eigen::Vector3f> points) {
+  constexpr std::size_t kSample = 20'000;
+  constexpr int kAngles = 180;
+  const std::size_t step = std::max<std::size_t>(1, points.size() / kSample);
+  double best_rad = 0.0;
+  double best_area = -1.0;
+  std::vector<float> xs, ys;
+  for (int i = 0; i < kAngles; ++i) {
+    const double angle = std::numbers::pi * (static_cast<double>(i) / kAngles - 0.5);
+    const auto c = static_cast<float>(std::cos(angle));
+    const auto s = static_cast<float>(std::sin(angle));
+    xs.clear();
+    ys.clear();
+    for (std::size_t k = 0; k < points.size(); k += step) {
+      xs.push_back(c * points[k].x() - s * points[k].y());
+      ys.push_back(s * points[k].x() + c * points[k].y());
+    }
+    const auto spread = [](std::vector<float>& v) {  // between the first and last half per cent
+      const auto low = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 200);
+      const auto high = v.end() - 1 - static_cast<std::ptrdiff_t>(v.size() / 200);
+      std::nth_element(v.begin(), low, v.end());
+      const float a = *low;
+      std::nth_element(v.begin(), high, v.end());
+      return *high - a;
+    };
+    const double width = spread(xs);
+    const double depth = spread(ys);
+    if (width < depth) continue;  // the other half turn has it the right way round
+    if (best_area < 0.0 || width * depth < best_area) {
+      best_area = width * depth;
+      best_rad = angle;
+    }
+  }
+  return best_rad;
+}
+
+}  // namespace landmarkdb::datasets
