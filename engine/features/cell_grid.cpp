@@ -107,7 +107,7 @@ std::uint32_t CellGrid::first_place(std::uint64_t key) const {
   return start_[static_cast<std::size_t>(it - keys_.begin())];
 }
 
-void CellGrid::within(const Eigen::Vector3f& query, float radius_m, std::vector<Found>& out) const {
+void CellGrid::runs(const Eigen::Vector3f& query, float radius_m, std::vector<Run>& out) const {
   out.clear();
   if (order_.empty()) return;
   const double reach = static_cast<double>(radius_m) * (1.0 + kRimMargin);
@@ -119,18 +119,27 @@ void CellGrid::within(const Eigen::Vector3f& query, float radius_m, std::vector<
     low[axis] = std::max<std::int64_t>(low[axis], 0);
     high[axis] = std::min(high[axis], last_[axis]);
   }
-  const float limit = radius_m * radius_m;
   for (std::int64_t cx = low[0]; cx <= high[0]; ++cx) {
     for (std::int64_t cy = low[1]; cy <= high[1]; ++cy) {
-      const std::uint32_t begin = first_place(pack_cell(cx, cy, low[2]));
-      const std::uint32_t end = first_place(pack_cell(cx, cy, high[2]) + 1);
-      for (std::uint32_t place = begin; place < end; ++place) {
-        const float dx = x_[place] - query.x();
-        const float dy = y_[place] - query.y();
-        const float dz = z_[place] - query.z();
-        const float squared = dx * dx + dy * dy + dz * dz;
-        if (squared < limit) out.push_back({place, squared});
-      }
+      const Run run{first_place(pack_cell(cx, cy, low[2])),
+                    first_place(pack_cell(cx, cy, high[2]) + 1)};
+      if (run.begin < run.end) out.push_back(run);
+    }
+  }
+}
+
+void CellGrid::within(const Eigen::Vector3f& query, float radius_m, std::vector<Found>& out) const {
+  out.clear();
+  std::vector<Run> near;
+  runs(query, radius_m, near);
+  const float limit = radius_m * radius_m;
+  for (const Run& run : near) {
+    for (std::uint32_t place = run.begin; place < run.end; ++place) {
+      const float dx = x_[place] - query.x();
+      const float dy = y_[place] - query.y();
+      const float dz = z_[place] - query.z();
+      const float squared = dx * dx + dy * dy + dz * dz;
+      if (squared < limit) out.push_back({place, squared});
     }
   }
 }

@@ -30,8 +30,21 @@ class CellGrid {
   // All points nearer than `radius_m`, in the order of places. `out` is overwritten.
   void within(const Eigen::Vector3f& query, float radius_m, std::vector<Found>& out) const;
 
+  // Places `begin .. end - 1`.
+  struct Run {
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+  };
+
+  // The runs of places that hold every point nearer than `radius_m`, and others near by. Ascending,
+  // without overlap. `out` is overwritten.
+  void runs(const Eigen::Vector3f& query, float radius_m, std::vector<Run>& out) const;
+
   std::size_t size() const { return order_.size(); }
   std::span<const std::uint32_t> order() const { return order_; }
+  std::span<const float> x() const { return x_; }  // by place
+  std::span<const float> y() const { return y_; }
+  std::span<const float> z() const { return z_; }
   Eigen::Vector3f point(std::size_t place) const { return {x_[place], y_[place], z_[place]}; }
 
  private:

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numeric>
 #include <string>
 #include <string_view>
@@ -14,15 +15,15 @@
 #include "engine/base/parallel.hpp"
 #include "engine/features/cell_grid.hpp"
 #include "engine/features/check_cloud.hpp"
-#include "engine/features/pcl_shot.hpp"
+#include "engine/features/shot_describer.hpp"
 
 namespace landmarkdb {
 namespace {
 
 constexpr std::string_view kStage = "describe";
 
-// Keypoints handed to PCL at once: enough to make its set-up (some microseconds) vanish, few enough
-// that a stop request is noticed within 100 ms at 3 ms a descriptor, ten times the usual cost.
+// Keypoints described at once: enough to make PCL's set-up (some microseconds) vanish, few enough
+// that a stop request is noticed within 100 ms at 3 ms a descriptor, ten times PCL's usual cost.
 constexpr std::size_t kBlock = 32;
 
 // Cells of half the radius test about twice as many points as lie in reach on a surface; smaller
@@ -79,7 +80,8 @@ DescriptorSet keep_valid(const PreparedCloud& cloud,
 DescriptorSet describe_shot(const PreparedCloud& cloud,
                             const Keypoints& keypoints,
                             double radius_m,
-                            const RunContext& context) {
+                            const RunContext& context,
+                            ShotMethod method) {
   check_cloud(cloud, kStage);
   check_length(radius_m, "SHOT radius");
   for (const std::uint32_t index : keypoints.index) {
@@ -93,7 +95,10 @@ DescriptorSet describe_shot(const PreparedCloud& cloud,
   if (keypoints.index.empty()) return {};
 
   const CellGrid grid(cloud.points, radius_m / kCellsPerRadius);
-  const PclShot shot(grid, cloud.normals, static_cast<float>(radius_m));
+  const auto radius = static_cast<float>(radius_m);
+  const std::unique_ptr<ShotDescriber> shot = method == ShotMethod::kPcl
+                                                  ? make_pcl_shot(grid, cloud.normals, radius)
+                                                  : make_fast_shot(grid, cloud.normals, radius);
   const std::vector<std::uint32_t> place_of = places_of_points(grid);
   const std::vector<std::uint32_t> sorted = spatial_order(place_of, keypoints);
 
@@ -119,7 +124,7 @@ DescriptorSet describe_shot(const PreparedCloud& cloud,
         places.push_back(place_of[keypoints.index[sorted[i]]]);
         block_values.push_back(values.data() + sorted[i] * kShotLength);
       }
-      shot.describe(places, block_rows, block_values);
+      shot->describe(places, block_rows, block_values);
       for (std::size_t i = begin; i < end; ++i) rows[sorted[i]] = block_rows[i - begin];
       if (worker == 0) context.report(kStage, begin, keypoints.size());
     }

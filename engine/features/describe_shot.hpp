@@ -6,6 +6,11 @@
 
 namespace landmarkdb {
 
+enum class ShotMethod {
+  kFast,  // ours; rows equal PCL's within 1e-4 but for points on the rim of a bin
+  kPcl,   // the reference, some ten times slower
+};
+
 // Describes each keypoint by SHOT (Tombari, Salti, Di Stefano 2010) and its local reference frame,
 // both over the points nearer than `radius_m`.
 //
@@ -21,6 +26,7 @@ namespace landmarkdb {
 DescriptorSet describe_shot(const PreparedCloud& cloud,
                             const Keypoints& keypoints,
                             double radius_m,
-                            const RunContext& context);
+                            const RunContext& context,
+                            ShotMethod method = ShotMethod::kFast);
 
 }  // namespace landmarkdb

@@ -1,8 +1,6 @@
-#include "engine/features/pcl_shot.hpp"
-
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <memory>
 #include <vector>
 
 #include <pcl/features/shot.h>
@@ -12,6 +10,7 @@
 #include <pcl/search/search.h>
 
 #include "engine/base/error.hpp"
+#include "engine/features/shot_describer.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -110,33 +109,35 @@ bool to_rotation(const pcl::ReferenceFrame& frame, Eigen::Matrix3f& R) {
   return R.allFinite() && axes.determinant() > 0.5;
 }
 
-}  // namespace
-
-struct PclShot::Clouds {
-  Points::Ptr points = std::make_shared<Points>();
-  Normals::Ptr normals = std::make_shared<Normals>();
-};
-
-PclShot::PclShot(const CellGrid& grid, std::span<const Eigen::Vector3f> normals, float radius_m)
-    : grid_(grid), radius_m_(radius_m) {
-  auto clouds = std::make_unique<Clouds>();
-  clouds->points->reserve(grid.size());
-  clouds->normals->reserve(grid.size());
-  for (std::size_t place = 0; place < grid.size(); ++place) {
-    const Eigen::Vector3f p = grid.point(place);
-    const Eigen::Vector3f& n = normals[grid.order()[place]];
-    clouds->points->push_back(pcl::PointXYZ(p.x(), p.y(), p.z()));
-    clouds->normals->push_back(pcl::Normal(n.x(), n.y(), n.z()));
+class PclShot : public ShotDescriber {
+ public:
+  PclShot(const CellGrid& grid, std::span<const Eigen::Vector3f> normals, float radius_m)
+      : grid_(grid), radius_m_(radius_m) {
+    points_->reserve(grid.size());
+    normals_->reserve(grid.size());
+    for (std::size_t place = 0; place < grid.size(); ++place) {
+      const Eigen::Vector3f p = grid.point(place);
+      const Eigen::Vector3f& n = normals[grid.order()[place]];
+      points_->push_back(pcl::PointXYZ(p.x(), p.y(), p.z()));
+      normals_->push_back(pcl::Normal(n.x(), n.y(), n.z()));
+    }
   }
-  clouds_ = std::move(clouds);
-}
 
-PclShot::~PclShot() = default;
+  void describe(std::span<const std::uint32_t> places,
+                std::span<ShotRow> rows,
+                std::span<float* const> values) const override;
+
+ private:
+  const CellGrid& grid_;
+  float radius_m_;
+  Points::Ptr points_ = std::make_shared<Points>();
+  Normals::Ptr normals_ = std::make_shared<Normals>();
+};
 
 void PclShot::describe(std::span<const std::uint32_t> places,
                        std::span<ShotRow> rows,
                        std::span<float* const> values) const {
-  const auto search = std::make_shared<PreparedSearch>(clouds_->points);
+  const auto search = std::make_shared<PreparedSearch>(points_);
   search->prepare(grid_, places, radius_m_);
 
   // Only keypoints with neighbours are shown to PCL: it prints a warning for each of the others.
@@ -151,7 +152,7 @@ void PclShot::describe(std::span<const std::uint32_t> places,
   if (asked->empty()) return;
 
   pcl::SHOTLocalReferenceFrameEstimation<pcl::PointXYZ, pcl::ReferenceFrame> frame_estimator;
-  frame_estimator.setInputCloud(clouds_->points);
+  frame_estimator.setInputCloud(points_);
   frame_estimator.setIndices(asked);
   frame_estimator.setSearchMethod(search);
   frame_estimator.setRadiusSearch(radius_m_);
@@ -170,8 +171,8 @@ void PclShot::describe(std::span<const std::uint32_t> places,
   if (described->empty()) return;
 
   pcl::SHOTEstimation<pcl::PointXYZ, pcl::Normal, pcl::SHOT352> shot;
-  shot.setInputCloud(clouds_->points);
-  shot.setInputNormals(clouds_->normals);
+  shot.setInputCloud(points_);
+  shot.setInputNormals(normals_);
   shot.setIndices(described);
   shot.setSearchMethod(search);
   shot.setRadiusSearch(radius_m_);
@@ -187,6 +188,14 @@ void PclShot::describe(std::span<const std::uint32_t> places,
       std::copy(std::begin(histogram), std::end(histogram), values[described_row[i]]);
     }
   }
+}
+
+}  // namespace
+
+std::unique_ptr<ShotDescriber> make_pcl_shot(const CellGrid& grid,
+                                             std::span<const Eigen::Vector3f> normals,
+                                             float radius_m) {
+  return std::make_unique<PclShot>(grid, normals, radius_m);
 }
 
 }  // namespace landmarkdb
