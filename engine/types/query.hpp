@@ -48,9 +48,14 @@ struct CorrespondenceCounts {
 struct Fit {
   double overlap = 0.0;  // share of the query points that lie on the entry's surface
   double rmse_m = 0.0;   // of those points, to the surface
-  double free_space_violation =
-      0.0;                     // share of seen-through entry surface among what should be seen
-  double margin = 0.0;         // 0..1: how far ahead of the best different pose
+  // Of the directions in which the entry predicts a range: the sensor saw through its surface
+  // there, and the range measured agrees. Of the directions measured: the entry predicts one at
+  // all.
+  double free_space_violation = 0.0;
+  double explained = 0.0;
+  double coverage = 0.0;
+  double quality = 0.0;  // 0..1: overlap and agreement as one figure; what poses are ranked by
+  double margin = 0.0;   // 0..1: how far ahead of the best different pose
   double observability = 0.0;  // 0..1: weakest of the six freedoms against the strongest
 };
 

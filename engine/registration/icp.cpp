@@ -1,0 +1,140 @@
+#include "engine/registration/icp.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "engine/geometry/pose.hpp"
+
+namespace landmarkdb {
+
+namespace {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+struct NormalEquations {
+  Matrix6d A = Matrix6d::Zero();
+  Vector6d b = Vector6d::Zero();
+  double weight = 0.0;
+  double squared = 0.0;
+  std::size_t pairs = 0;
+};
+
+NormalEquations accumulate(const SurfaceGrid& target,
+                           std::span<const Eigen::Vector3f> source,
+                           std::span<const Eigen::Vector3f> source_normals,
+                           const Eigen::Isometry3d& T,
+                           const Eigen::Vector3d& centre,
+                           double scale_m,
+                           double min_agreement) {
+  NormalEquations sum;
+  const Eigen::Matrix3f R = T.linear().cast<float>();
+  const Eigen::Vector3f t = T.translation().cast<float>();
+  const auto agreement = static_cast<float>(min_agreement);
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const Eigen::Vector3f p = R * source[i] + t;
+    const Surfel* surfel = target.near(p);
+    if (surfel == nullptr || surfel->normal.dot(R * source_normals[i]) < agreement) continue;
+    const Eigen::Vector3d n = surfel->normal.cast<double>();
+    const double residual = n.dot((p - surfel->point).cast<double>());
+    const double ratio = residual / scale_m;
+    const double w = 1.0 / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio));
+    Vector6d J;
+    J << n, (p.cast<double>() - centre).cross(n);
+    sum.A.noalias() += w * J * J.transpose();
+    sum.b.noalias() -= w * residual * J;
+    sum.weight += w;
+    sum.squared += w * residual * residual;
+    ++sum.pairs;
+  }
+  return sum;
+}
+
+// Solves A x = b in the directions that A fixes; the others stay at zero. `length` brings rotation
+// to the scale of translation, so that one threshold serves both.
+Vector6d solve_observable(const Matrix6d& A, const Vector6d& b, double length) {
+  constexpr double kRelative =
+      1e-4;  // eigenvalue against the largest: below, the surface says nothing
+  Vector6d s;
+  s << 1.0, 1.0, 1.0, 1.0 / length, 1.0 / length, 1.0 / length;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(s.asDiagonal() * A * s.asDiagonal());
+  const Vector6d scaled = s.asDiagonal() * b;
+  Vector6d x = Vector6d::Zero();
+  for (int i = 0; i < 6; ++i) {
+    const double value = solver.eigenvalues()(i);
+    if (value <= kRelative * solver.eigenvalues()(5)) continue;
+    x += solver.eigenvectors().col(i) * (solver.eigenvectors().col(i).dot(scaled) / value);
+  }
+  return s.asDiagonal() * x;
+}
+
+Eigen::Vector3d centroid(std::span<const Eigen::Vector3f> points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3f& p : points) sum += p.cast<double>();
+  return points.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(points.size()));
+}
+
+double radius_of_gyration(std::span<const Eigen::Vector3f> points, const Eigen::Vector3d& centre) {
+  double sum = 0.0;
+  for (const Eigen::Vector3f& p : points) sum += (p.cast<double>() - centre).squaredNorm();
+  return points.empty() ? 1.0 : std::sqrt(sum / static_cast<double>(points.size()));
+}
+
+}  // namespace
+
+IcpResult refine_icp(const SurfaceGrid& target,
+                     std::span<const Eigen::Vector3f> source,
+                     std::span<const Eigen::Vector3f> source_normals,
+                     const Eigen::Isometry3d& T_target_source,
+                     const IcpOptions& options) {
+  const Eigen::Vector3d centre_source = centroid(source);
+  const double length = std::max(radius_of_gyration(source, centre_source), 1e-9);
+  const double cell = target.cell_m();
+  IcpResult result;
+  result.T_target_source = T_target_source;
+  double scale_cells = options.start_scale_cells;
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    Eigen::Isometry3d& T = result.T_target_source;
+    const Eigen::Vector3d centre = T * centre_source;
+    const NormalEquations sum = accumulate(target,
+                                           source,
+                                           source_normals,
+                                           T,
+                                           centre,
+                                           scale_cells * cell,
+                                           options.min_normal_agreement);
+    if (sum.pairs < 6) break;
+    const Vector6d x = solve_observable(sum.A, sum.b, length);
+    T.linear() = nearest_rotation(rotation_from_vector(x.tail<3>()) * T.linear());
+    T.translation() = centre + x.head<3>() - T.linear() * centre_source;
+    const bool at_end = scale_cells <= options.end_scale_cells * 1.001;
+    if (at_end && x.head<3>().norm() < options.stop_translation_cells * cell &&
+        x.tail<3>().norm() < options.stop_rotation_rad) {
+      result.converged = true;
+      break;
+    }
+    constexpr double kAnneal = 0.8;  // per iteration: from start to end in about six
+    scale_cells = std::max(options.end_scale_cells, scale_cells * kAnneal);
+  }
+  result.centre_target = result.T_target_source * centre_source;
+  const NormalEquations final_sum = accumulate(target,
+                                               source,
+                                               source_normals,
+                                               result.T_target_source,
+                                               result.centre_target,
+                                               options.end_scale_cells * cell,
+                                               options.min_normal_agreement);
+  result.information = final_sum.A;
+  if (final_sum.weight > 0.0) {
+    result.noise_m2 = final_sum.squared / final_sum.weight;
+    result.rmse_m = std::sqrt(result.noise_m2);
+  }
+  if (!source.empty()) {
+    result.paired = static_cast<double>(final_sum.pairs) / static_cast<double>(source.size());
+  }
+  return result;
+}
+
+}  // namespace landmarkdb

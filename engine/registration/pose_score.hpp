@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/registration/surface_grid.hpp"
+
+namespace landmarkdb {
+
+// Points that stand for a cloud in a quick test, most telling first: any prefix is a fair sample.
+struct TestPoints {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+  std::size_t size() const { return points.size(); }
+};
+
+// Draws up to `count` points so that rare surface directions are not drowned by floors and walls: a
+// point's chance falls with the square root of how common its normal's direction is (after the
+// normal-space sampling of Rusinkiewicz and Levoy 2001). Same seed, same cloud: same points.
+TestPoints select_test_points(std::span<const Eigen::Vector3f> points,
+                              std::span<const Eigen::Vector3f> normals,
+                              std::size_t count,
+                              std::uint64_t seed);
+
+struct ScoreOptions {
+  float sigma_cells = 1.0F;     // of the plane distance, in cells of the grid
+  std::size_t first_look = 32;  // points after which a hopeless pose is given up
+  float hopeless = 0.25F;       // mean score of the first look below which it is
+};
+
+// How well the points lie on the surface under the pose: the mean over the first `count` test
+// points of max(0, n.n') exp(-d^2 / 2 sigma^2), d the distance to the plane of the surface near;
+// 0..1. A pose given up at the first look gets that look's score minus one (below 0).
+float score_pose(const SurfaceGrid& target,
+                 const TestPoints& test,
+                 std::size_t count,
+                 const Eigen::Matrix3f& R_target_source,
+                 const Eigen::Vector3f& t_target_source,
+                 const ScoreOptions& options);
+
+}  // namespace landmarkdb

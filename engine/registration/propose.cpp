@@ -1,0 +1,32 @@
+#include "engine/registration/propose.hpp"
+
+namespace landmarkdb {
+
+std::vector<Proposal> propose_from_frames(std::span<const Correspondence> correspondences,
+                                          const DescriptorSet& target,
+                                          const DescriptorSet& source,
+                                          const std::optional<Gravity>& gravity,
+                                          const std::optional<PositionPrior>& prior) {
+  std::vector<Proposal> proposals;
+  proposals.reserve(correspondences.size());
+  for (std::size_t i = 0; i < correspondences.size(); ++i) {
+    const Correspondence& pair = correspondences[i];
+    Proposal proposal;
+    proposal.correspondence = static_cast<std::uint32_t>(i);
+    proposal.R_target_source = target.frames[pair.target] * source.frames[pair.query].transpose();
+    if (gravity) {
+      const Eigen::Vector3f up = proposal.R_target_source * gravity->up_source;
+      if (up.dot(gravity->up_target) < gravity->min_cosine) continue;
+      proposal.R_target_source =
+          Eigen::Quaternionf::FromTwoVectors(up, gravity->up_target).toRotationMatrix() *
+          proposal.R_target_source;
+    }
+    proposal.t_target_source =
+        target.keypoints[pair.target] - proposal.R_target_source * source.keypoints[pair.query];
+    if (prior && (proposal.t_target_source - prior->centre).norm() > prior->radius_m) continue;
+    proposals.push_back(proposal);
+  }
+  return proposals;
+}
+
+}  // namespace landmarkdb

@@ -1,0 +1,137 @@
+#include "engine/registration/range_image.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace landmarkdb {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+RangeImage::RangeImage(std::span<const Eigen::Vector3f> points,
+                       const Eigen::Vector3f& viewpoint,
+                       double finest_step_rad)
+    : viewpoint_(viewpoint), step_rad_(finest_step_rad) {
+  constexpr double kEnough = 0.6;        // of the measured cells have measured neighbours
+  constexpr double kCoarsestRad = 0.14;  // 8 deg
+  for (;; step_rad_ *= 2.0) {
+    measure(points);
+    if (complete_share() >= kEnough || step_rad_ >= kCoarsestRad) break;
+  }
+}
+
+void RangeImage::measure(std::span<const Eigen::Vector3f> points) {
+  side_ = std::max(4, static_cast<int>(std::ceil(0.5 * std::numbers::pi / step_rad_)));
+  cells_.assign(6 * static_cast<std::size_t>(side_ * side_), Cell{kInfinity, 0.0F});
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3f ray = point - viewpoint_;
+    const float range = ray.norm();
+    if (!(range > 0.0F)) continue;
+    Cell& cell = cells_[index_of(place_of(ray))];
+    cell.nearest = std::min(cell.nearest, range);
+    cell.furthest = std::max(cell.furthest, range);
+    max_range_m_ = std::max(max_range_m_, range);
+  }
+  widened_.clear();
+  widened_.reserve(cells_.size());
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) widened_.push_back(widen(cell));
+}
+
+double RangeImage::complete_share() const {
+  std::size_t measured = 0;
+  std::size_t complete = 0;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    measured += cells_[i].furthest > 0.0F ? 1U : 0U;
+    complete += widened_[i].furthest > 0.0F ? 1U : 0U;
+  }
+  return measured == 0 ? 0.0 : static_cast<double>(complete) / static_cast<double>(measured);
+}
+
+RangeImage::Place RangeImage::place_of(const Eigen::Vector3f& ray) const {
+  int axis = 0;
+  ray.cwiseAbs().maxCoeff(&axis);
+  const float depth = std::abs(ray(axis));
+  const auto along = [&](float v) {
+    const float angle =
+        std::atan(v / depth) * (4.0F / std::numbers::pi_v<float>);  // -1..1 over the face
+    return std::clamp(
+        static_cast<int>((angle + 1.0F) * 0.5F * static_cast<float>(side_)), 0, side_ - 1);
+  };
+  return {2 * axis + (ray(axis) < 0.0F ? 1 : 0),
+          along(ray((axis + 1) % 3)),
+          along(ray((axis + 2) % 3))};
+}
+
+std::size_t RangeImage::index_of(const Place& place) const {
+  return static_cast<std::size_t>((place.face * side_ + place.row) * side_ + place.column);
+}
+
+RangeImage::Cell RangeImage::widen(std::size_t cell) const {
+  const int index = static_cast<int>(cell);
+  const Place place{index / (side_ * side_), (index / side_) % side_, index % side_};
+  Cell wide{kInfinity, 0.0F};
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      // At a face's edge the cell itself stands in for the neighbour on the next face.
+      const Place beside{place.face,
+                         std::clamp(place.row + dy, 0, side_ - 1),
+                         std::clamp(place.column + dx, 0, side_ - 1)};
+      const Cell& other = cells_[index_of(beside)];
+      if (!(other.furthest > 0.0F)) return Cell{0.0F, 0.0F};
+      wide.nearest = std::min(wide.nearest, other.nearest);
+      wide.furthest = std::max(wide.furthest, other.furthest);
+    }
+  }
+  return wide;
+}
+
+SightCounts RangeImage::compare(std::span<const Eigen::Vector3f> surface,
+                                const Eigen::Isometry3d& T_here_surface,
+                                float patch_m,
+                                const SightTolerance& tolerance) const {
+  const Eigen::Matrix3f R = T_here_surface.linear().cast<float>();
+  const Eigen::Vector3f t = T_here_surface.translation().cast<float>() - viewpoint_;
+  constexpr int kWidestPatch = 6;  // cells to each side: what stands at the lens fills no more
+  const float reach = 2.0F * max_range_m_;  // what lies further could only be hidden
+  std::vector<float> predicted(cells_.size(), kInfinity);
+  for (const Eigen::Vector3f& point : surface) {
+    const Eigen::Vector3f ray = R * point + t;
+    const float range = ray.norm();
+    if (!(range > 0.0F) || range > reach) continue;
+    const Place place = place_of(ray);
+    const float half_patch = 0.5F * patch_m / (range * static_cast<float>(step_rad_));
+    const int half = std::min(kWidestPatch, static_cast<int>(half_patch + 0.5F));
+    for (int row = std::max(0, place.row - half); row <= std::min(side_ - 1, place.row + half);
+         ++row) {
+      for (int column = std::max(0, place.column - half);
+           column <= std::min(side_ - 1, place.column + half);
+           ++column) {
+        float& nearest = predicted[index_of({place.face, row, column})];
+        nearest = std::min(nearest, range);
+      }
+    }
+  }
+  SightCounts counts;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const Cell& wide = widened_[i];
+    if (!(wide.furthest > 0.0F)) continue;
+    ++counts.measured;
+    if (predicted[i] == kInfinity) continue;
+    const float slack = tolerance.metres + tolerance.share * wide.furthest;
+    if (predicted[i] < wide.nearest - slack) {
+      ++counts.crossed;
+    } else if (predicted[i] > wide.furthest + slack) {
+      ++counts.hidden;
+    } else {
+      ++counts.agree;
+    }
+  }
+  return counts;
+}
+
+}  // namespace landmarkdb

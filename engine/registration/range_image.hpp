@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace landmarkdb {
+
+// What the sensor should have measured under a pose, against what it did; counts of directions.
+struct SightCounts {
+  std::size_t measured = 0;  // directions the sensor measured, their neighbours too
+  std::size_t agree = 0;     // the entry has a surface at the range measured
+  std::size_t crossed = 0;   // the entry has a surface nearer: the ray went through it
+  std::size_t hidden = 0;    // the entry has a surface further off only: something stands before it
+  // In the remaining directions the entry has nothing: it was not scanned there, and nothing is
+  // said.
+  std::size_t predicted() const { return agree + crossed + hidden; }
+};
+
+// How far before or behind the measured range still counts as seen: fixed, and a share of the
+// range.
+struct SightTolerance {
+  float metres = 0.0F;
+  float share = 0.0F;
+};
+
+// The nearest and furthest range a cloud has in each direction from its viewpoint: free space as
+// the sensor saw it. The sphere is cut into the six faces of a cube, each into cells of equal
+// angle, so that no direction is a pole; directions never measured stay unknown. Works for a depth
+// camera, a spinning laser and a fused fragment alike: the cells are widened until most of those
+// measured have measured neighbours. Immutable, thread-safe.
+class RangeImage {
+ public:
+  // `points` in metres, any frame; `viewpoint` in the same frame. `finest_step_rad` is the least
+  // width of a cell.
+  RangeImage(std::span<const Eigen::Vector3f> points,
+             const Eigen::Vector3f& viewpoint,
+             double finest_step_rad);
+
+  // Renders `surface` (carried into this frame by T_here_surface, each point a patch `patch_m`
+  // wide) and compares. Only directions whose eight neighbours were measured too are counted, so
+  // that silhouettes decide nothing. Cost: one projection a point within reach.
+  SightCounts compare(std::span<const Eigen::Vector3f> surface,
+                      const Eigen::Isometry3d& T_here_surface,
+                      float patch_m,
+                      const SightTolerance& tolerance) const;
+
+  float max_range_m() const { return max_range_m_; }
+  double step_rad() const { return step_rad_; }
+
+ private:
+  struct Cell {
+    float nearest, furthest;
+  };
+  struct Place {
+    int face, row, column;
+  };
+  void measure(std::span<const Eigen::Vector3f> points);
+  double complete_share() const;
+  Place place_of(const Eigen::Vector3f& ray) const;
+  std::size_t index_of(const Place& place) const;
+  Cell widen(std::size_t cell) const;
+
+  Eigen::Vector3f viewpoint_;
+  double step_rad_ = 0.0;
+  int side_ = 0;  // cells along an edge of a face
+  float max_range_m_ = 0.0F;
+  std::vector<Cell> cells_;
+  std::vector<Cell>
+      widened_;  // over the 3 x 3 cells around; furthest = 0 where one of these is unknown
+};
+
+}  // namespace landmarkdb

@@ -1,0 +1,124 @@
+#include "engine/registration/surface_grid.hpp"
+
+#include <cassert>
+#include <cmath>
+
+namespace landmarkdb {
+
+namespace {
+
+constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
+constexpr int kLimit = 1 << 20;  // cells a side: 21 bits and a sign in each key
+constexpr std::uint64_t kHashFactor = 0x9e3779b97f4a7c15ULL;  // 2^64 / golden ratio (Knuth 6.4)
+
+std::size_t cell_in_block(const Eigen::Vector3i& cell) {
+  return static_cast<std::size_t>((cell.x() & 7) | ((cell.y() & 7) << 3) | ((cell.z() & 7) << 6));
+}
+
+}  // namespace
+
+SurfaceGrid::SurfaceGrid(std::span<const Eigen::Vector3f> points,
+                         std::span<const Eigen::Vector3f> normals,
+                         double cell_m,
+                         int reach_cells)
+    : cell_m_(static_cast<float>(cell_m)),
+      inverse_cell_(static_cast<float>(1.0 / cell_m)),
+      reach_(reach_cells) {
+  assert(points.size() == normals.size() && "one normal a point");
+  assert(cell_m > 0.0 && reach_cells >= 0 && "a grid needs a cell size");
+  keys_.assign(1024, kNoKey);
+  slots_.assign(1024, 0);
+  surfels_.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    surfels_.push_back(Surfel{points[i], normals[i]});
+    insert_around(static_cast<std::uint32_t>(i));
+  }
+}
+
+SurfaceGrid::Cell SurfaceGrid::cell_of(const Eigen::Vector3f& p) const {
+  const Eigen::Array3f scaled = (p.array() * inverse_cell_).floor();
+  const auto limit = static_cast<float>(kLimit - 16);
+  // Clamped before the cast: a float beyond int is undefined behaviour, and nothing is stored out
+  // there.
+  return scaled.max(-limit).min(limit).cast<int>();
+}
+
+std::uint64_t SurfaceGrid::key_of(const Cell& block) {
+  const auto part = [](int v) { return static_cast<std::uint64_t>(v + kLimit) & 0x1fffffU; };
+  return part(block.x()) | (part(block.y()) << 21U) | (part(block.z()) << 42U);
+}
+
+std::size_t SurfaceGrid::find_slot(std::uint64_t key) const {
+  const std::size_t mask = keys_.size() - 1;
+  std::size_t slot = static_cast<std::size_t>((key * kHashFactor) >> 20U) & mask;
+  while (keys_[slot] != key && keys_[slot] != kNoKey) slot = (slot + 1) & mask;
+  return slot;
+}
+
+SurfaceGrid::Block& SurfaceGrid::block_at(std::uint64_t key) {
+  std::size_t slot = find_slot(key);
+  if (keys_[slot] == kNoKey) {
+    if (2 * (blocks_.size() + 1) > keys_.size()) {
+      grow_table();
+      slot = find_slot(key);
+    }
+    keys_[slot] = key;
+    slots_[slot] = static_cast<std::uint32_t>(blocks_.size());
+    blocks_.emplace_back();
+    blocks_.back().fill(0);
+  }
+  return blocks_[slots_[slot]];
+}
+
+void SurfaceGrid::grow_table() {
+  std::vector<std::uint64_t> old_keys(2 * keys_.size(), kNoKey);
+  std::vector<std::uint32_t> old_slots(2 * slots_.size(), 0);
+  old_keys.swap(keys_);
+  old_slots.swap(slots_);
+  for (std::size_t i = 0; i < old_keys.size(); ++i) {
+    if (old_keys[i] == kNoKey) continue;
+    const std::size_t slot = find_slot(old_keys[i]);
+    keys_[slot] = old_keys[i];
+    slots_[slot] = old_slots[i];
+  }
+}
+
+void SurfaceGrid::insert_around(std::uint32_t surfel) {
+  const Eigen::Vector3f& p = surfels_[surfel].point;
+  const Cell home = cell_of(p);
+  const float reach_squared =
+      reach_m() * reach_m() + 0.75F * cell_m_ * cell_m_;  // to a cell's far corner
+  for (int dz = -reach_; dz <= reach_; ++dz) {
+    for (int dy = -reach_; dy <= reach_; ++dy) {
+      for (int dx = -reach_; dx <= reach_; ++dx) {
+        const Cell cell = home + Cell(dx, dy, dz);
+        const Eigen::Vector3f centre = (cell.cast<float>().array() + 0.5F).matrix() * cell_m_;
+        const float distance = (centre - p).squaredNorm();
+        if (distance > reach_squared) continue;
+        const Cell block(cell.x() >> kBlockBits, cell.y() >> kBlockBits, cell.z() >> kBlockBits);
+        std::uint32_t& stored = block_at(key_of(block))[cell_in_block(cell)];
+        if (stored == 0 || (centre - surfels_[stored - 1].point).squaredNorm() > distance) {
+          stored = surfel + 1;
+        }
+      }
+    }
+  }
+}
+
+const Surfel* SurfaceGrid::near(const Eigen::Vector3f& p) const {
+  const Cell cell = cell_of(p);
+  const Cell block(cell.x() >> kBlockBits, cell.y() >> kBlockBits, cell.z() >> kBlockBits);
+  const std::uint64_t key = key_of(block);
+  const std::size_t slot = find_slot(key);
+  if (keys_[slot] != key) return nullptr;
+  const std::uint32_t stored = blocks_[slots_[slot]][cell_in_block(cell)];
+  return stored == 0 ? nullptr : &surfels_[stored - 1];
+}
+
+std::size_t SurfaceGrid::memory_bytes() const {
+  return blocks_.size() * sizeof(Block) +
+         keys_.size() * (sizeof(std::uint64_t) + sizeof(std::uint32_t)) +
+         surfels_.size() * sizeof(Surfel);
+}
+
+}  // namespace landmarkdb

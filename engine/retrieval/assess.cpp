@@ -1,0 +1,116 @@
+#include "engine/retrieval/assess.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace landmarkdb {
+
+namespace {
+
+constexpr std::size_t kCoarsePoints = 400;
+
+Eigen::Isometry3d turned(const Eigen::Isometry3d& T, bool inverse) {
+  return inverse ? T.inverse() : T;
+}
+
+double extent_of(std::span<const Eigen::Vector3f> points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3f& p : points) mean += p.cast<double>();
+  mean /= static_cast<double>(std::max<std::size_t>(points.size(), 1));
+  double sum = 0.0;
+  for (const Eigen::Vector3f& p : points) sum += (p.cast<double>() - mean).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(points.size(), 1)));
+}
+
+// Few points prove little: a coarse entry's surface is near anything. The shares are drawn towards
+// what a wrong pose reaches, as if kPriorPoints of its points had been seen before.
+double drawn_in(double share, double points) {
+  constexpr double kPriorPoints = 300.0;
+  constexpr double kPriorShare = 0.35;
+  return (share * points + kPriorShare * kPriorPoints) / (points + kPriorPoints);
+}
+
+// How well a pose explains the query. Overlap counts the surface that is there, against what can be
+// there at all (`possible`); sight counts the directions in which entry and sensor agree. Each
+// alone is fooled: overlap by bare walls, sight by an entry seen from outside.
+double quality(const Evidence& evidence, double possible, double points) {
+  const double overlap = std::min(1.0, 0.5 * (evidence.overlap + evidence.balanced) / possible);
+  return drawn_in(overlap, points) * evidence.explained * evidence.explained;
+}
+
+// A place can hold what it was scanned for, and a query mostly outside of that is not half proved.
+double possible_in_place(const Evidence& evidence) {
+  constexpr double kLeast = 0.5;
+  return std::max(evidence.coverage, kLeast);
+}
+
+// An object fills little of the view, half of it faces away, and clutter may stand before it.
+void expect_object(Evidence& evidence) {
+  const double judged = evidence.explained + evidence.crossed;
+  evidence.explained = judged > 0.0 ? evidence.explained / judged : 0.0;
+  evidence.crossed = judged > 0.0 ? evidence.crossed / judged : 0.0;
+  evidence.coverage = 1.0;
+}
+constexpr double kPossibleOfObject = 0.5;
+
+}  // namespace
+
+Assessed assess_coarse(const Meeting& meeting, const Eigen::Isometry3d& T_entry_sensor) {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+  for (const std::uint32_t i : spread(meeting.source.size(), kCoarsePoints)) {
+    points.push_back(meeting.source[i]);
+    normals.push_back(meeting.source_normals[i]);
+  }
+  IcpOptions options;
+  options.max_iterations = 12;
+  Assessed assessed;
+  assessed.T_entry_proposed = T_entry_sensor;
+  assessed.icp = refine_icp(
+      meeting.target, points, normals, turned(T_entry_sensor, meeting.entry_is_source), options);
+  assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
+  measure_overlap(
+      meeting.target, points, normals, assessed.icp.T_target_source, {}, assessed.evidence);
+  assessed.score = drawn_in(0.5 * (assessed.evidence.overlap + assessed.evidence.balanced),
+                            static_cast<double>(meeting.source.size()));
+  return assessed;
+}
+
+void assess_fine(const Meeting& meeting,
+                 const Entry& entry,
+                 const CleanQuery& query,
+                 Assessed& assessed) {
+  IcpOptions options;
+  options.start_scale_cells = 0.8;
+  options.max_iterations = 30;
+  assessed.icp = refine_icp(meeting.target,
+                            meeting.source,
+                            meeting.source_normals,
+                            turned(assessed.T_entry_sensor, meeting.entry_is_source),
+                            options);
+  assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
+  measure_overlap(meeting.target,
+                  meeting.source,
+                  meeting.source_normals,
+                  assessed.icp.T_target_source,
+                  {},
+                  assessed.evidence);
+  measure_sight(query.ranges,
+                entry.sight_points,
+                assessed.T_entry_sensor.inverse(),
+                entry.record().prepared.resolution_m,
+                {},
+                assessed.evidence);
+  assessed.evidence.observability =
+      observability(assessed.icp, extent_of(meeting.source), meeting.source.size());
+  double possible = kPossibleOfObject;
+  if (meeting.entry_is_source) {
+    expect_object(assessed.evidence);
+  } else {
+    possible = possible_in_place(assessed.evidence);
+  }
+  assessed.score = quality(assessed.evidence, possible, static_cast<double>(meeting.source.size()));
+}
+
+}  // namespace landmarkdb

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include <Eigen/Geometry>
+
+#include "engine/registration/icp.hpp"
+#include "engine/registration/verify.hpp"
+#include "engine/retrieval/entry.hpp"
+#include "engine/retrieval/query_view.hpp"
+
+namespace landmarkdb {
+
+// A pose of the sensor in an entry, refined, with what speaks for and against it. The entry's
+// coordinates are those of its stored points (without the origin).
+struct Assessed {
+  std::size_t entry = 0;
+  std::size_t matches = 0;  // whose correspondences proposed it (SearchResult::matches)
+  Eigen::Isometry3d T_entry_proposed =
+      Eigen::Isometry3d::Identity();  // sensor to entry, before refinement
+  Eigen::Isometry3d T_entry_sensor = Eigen::Isometry3d::Identity();  // after
+  std::uint32_t correspondence = 0;  // that proposed it, of the entry's own list
+  IcpResult icp;
+  Evidence evidence;
+  double score = 0.0;  // 0..1, for ranking and for telling rivals
+};
+
+// Where the query's surface and the entry's meet: for a place the query's points lie on the entry's
+// surface; for an object the object's points lie on the query's.
+struct Meeting {
+  const SurfaceGrid& target;
+  std::span<const Eigen::Vector3f> source;
+  std::span<const Eigen::Vector3f> source_normals;
+  bool entry_is_source = false;
+};
+
+// A quick refinement with few points: enough to rank candidates.
+Assessed assess_coarse(const Meeting& meeting, const Eigen::Isometry3d& T_entry_sensor);
+
+// Refinement with all points, and all the evidence.
+void assess_fine(const Meeting& meeting,
+                 const Entry& entry,
+                 const CleanQuery& query,
+                 Assessed& assessed);
+
+}  // namespace landmarkdb

@@ -1,0 +1,168 @@
+#include "engine/retrieval/describe_scene.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "engine/base/error.hpp"
+#include "engine/cloud/merge_clouds.hpp"
+#include "engine/cloud/prepare_cloud.hpp"
+#include "engine/cloud/resolution.hpp"
+#include "engine/cloud/sanitise.hpp"
+#include "engine/features/describe_shot.hpp"
+#include "engine/features/detect_keypoints.hpp"
+#include "engine/retrieval/feature_options.hpp"
+
+namespace landmarkdb {
+
+namespace {
+
+struct MergedScans {
+  PointCloud cloud;
+  CloudCounts counts;
+  std::vector<std::string> sources;
+};
+
+void add_counts(CloudCounts& sum, const CloudCounts& part) {
+  sum.points += part.points;
+  sum.not_finite += part.not_finite;
+  sum.duplicates += part.duplicates;
+  sum.out_of_range += part.out_of_range;
+  sum.used += part.used;
+}
+
+std::string describe_counts(const CloudCounts& counts) {
+  std::ostringstream text;
+  text << counts.points << " points, " << counts.not_finite << " not finite, " << counts.duplicates
+       << " repeated, " << counts.out_of_range << " out of range, " << counts.used << " left";
+  return text.str();
+}
+
+MergedScans merge_scans(std::vector<Scan> scans, const RunContext& context) {
+  MergedScans merged;
+  std::vector<PointCloud> clouds;
+  std::vector<Eigen::Isometry3d> T_scene_cloud;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    context.report("sanitise", i, scans.size());
+    add_counts(merged.counts, sanitise(scans[i].cloud));
+    merged.sources.push_back(std::move(scans[i].source));
+    if (scans[i].cloud.empty()) continue;
+    clouds.push_back(std::move(scans[i].cloud));
+    T_scene_cloud.push_back(scans[i].T_scene_cloud);
+  }
+  constexpr std::size_t kFewest = 4;  // a similarity needs four pairs
+  if (merged.counts.used < kFewest) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "nothing to describe: " + describe_counts(merged.counts) + ", want at least 4");
+  }
+  const bool as_it_is =
+      clouds.size() == 1 && T_scene_cloud[0].isApprox(Eigen::Isometry3d::Identity());
+  merged.cloud = as_it_is ? std::move(clouds[0]) : merge_clouds(clouds, T_scene_cloud);
+  return merged;
+}
+
+FeatureOptions feature_options_of(const CloudScale& scale, const IndexOptions& options) {
+  for (const auto& [name, value] :
+       {std::pair{"voxel", options.voxel_m}, {"radius", options.radius_m}}) {
+    if (value && !(*value > 0.0 && std::isfinite(*value))) {
+      throw Error(
+          ErrorCode::kInvalidArgument,
+          std::string(name) + " is " + std::to_string(*value) + " m, want a positive length",
+          name);
+    }
+  }
+  return derive_feature_options(
+      scale, options.kind, options.keypoints, options.voxel_m, options.radius_m);
+}
+
+std::optional<Eigen::Vector3d> unit_up(const std::optional<Eigen::Vector3d>& up) {
+  if (!up) return std::nullopt;
+  if (!up->allFinite() || !(up->norm() > 0.0)) {
+    throw Error(
+        ErrorCode::kInvalidArgument, "the up direction must be finite and longer than zero", "up");
+  }
+  return up->normalized();
+}
+
+}  // namespace
+
+SceneRecord describe_scene(std::string name,
+                           std::vector<Scan> scans,
+                           const IndexOptions& options,
+                           const RunContext& context) {
+  SceneRecord record;
+  record.name = std::move(name);
+  record.kind = options.kind;
+  record.up = unit_up(options.up);
+  MergedScans merged = merge_scans(std::move(scans), context);
+  record.sources = std::move(merged.sources);
+
+  const CloudScale scale = measure_scale(merged.cloud);
+  if (units_look_wrong(scale, options.kind)) record.warnings.emplace_back("units_suspect");
+  record.options = feature_options_of(scale, options);
+
+  record.prepared = prepare_cloud(merged.cloud,
+                                  merged.counts,
+                                  {record.options.voxel_m, record.options.normal_radius_m},
+                                  context);
+  merged = {};
+  if (!record.prepared.normals_from_viewpoint) record.warnings.emplace_back("normals_unoriented");
+
+  const Keypoints keypoints =
+      detect_keypoints(record.prepared, keypoint_options(record.options), context);
+  record.descriptors =
+      describe_shot(record.prepared, keypoints, record.options.shot_radius_m, context);
+  if (record.descriptors.size() < 4) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "nothing to recognise '" + record.name +
+                    "' by: " + describe_counts(record.prepared.counts) + ", " +
+                    std::to_string(record.prepared.size()) + " at the working resolution, " +
+                    std::to_string(keypoints.size()) + " keypoints, " +
+                    std::to_string(record.descriptors.size()) +
+                    " descriptors, want at least 4: is it all one plane?");
+  }
+  return record;
+}
+
+IndexEstimate estimate_index(std::vector<Scan> scans,
+                             const IndexOptions& options,
+                             const RunContext& context) {
+  const auto start = std::chrono::steady_clock::now();
+  const MergedScans merged = merge_scans(std::move(scans), context);
+  IndexEstimate estimate;
+  estimate.points = merged.counts.points;
+  estimate.options = feature_options_of(measure_scale(merged.cloud), options);
+  const PreparedCloud prepared =
+      prepare_cloud(merged.cloud,
+                    merged.counts,
+                    {estimate.options.voxel_m, estimate.options.normal_radius_m},
+                    context);
+  estimate.points_used = prepared.size();
+  const Keypoints keypoints =
+      detect_keypoints(prepared, keypoint_options(estimate.options), context);
+  estimate.keypoints = keypoints.size();
+  const std::chrono::duration<double> so_far = std::chrono::steady_clock::now() - start;
+
+  // Bytes as the store lays them out: points and normals as float, a quaternion and the descriptor
+  // a keypoint.
+  constexpr std::uint64_t kPointBytes = 24;
+  constexpr std::uint64_t kKeypointBytes = 24 + 16 + kShotLength * sizeof(float);
+  estimate.database_bytes =
+      kPointBytes * estimate.points_used + kKeypointBytes * estimate.keypoints;
+  estimate.memory_bytes = estimate.points * 64 + 4 * estimate.database_bytes;
+  // A sample of the descriptors tells what the rest will take.
+  constexpr std::size_t kSample = 200;
+  Keypoints sample;
+  const std::size_t step = std::max<std::size_t>(1, keypoints.size() / kSample);
+  for (std::size_t i = 0; i < keypoints.size(); i += step)
+    sample.index.push_back(keypoints.index[i]);
+  const auto described_from = std::chrono::steady_clock::now();
+  describe_shot(prepared, sample, estimate.options.shot_radius_m, context);
+  const std::chrono::duration<double> sampled = std::chrono::steady_clock::now() - described_from;
+  estimate.seconds = so_far.count() + sampled.count() * static_cast<double>(step);
+  return estimate;
+}
+
+}  // namespace landmarkdb

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/registration/pose_score.hpp"
+#include "engine/registration/surface_grid.hpp"
+#include "engine/types/scene_record.hpp"
+
+namespace landmarkdb {
+
+// One catalogue entry with what the search derives from it. Immutable, thread-safe.
+struct Entry {
+  CatalogEntry stored;
+  SurfaceGrid grid;
+  TestPoints test;                            // of the entry's own surface, for objects
+  std::vector<Eigen::Vector3f> sight_points;  // spread over the whole surface, for free space
+
+  const SceneRecord& record() const { return *stored.record; }
+  bool is_object() const { return stored.record->kind == EntryKind::kObject; }
+};
+
+// The grid every surface is verified on: its cell is the working resolution, its reach what a
+// proposal from one local reference frame may be off by.
+SurfaceGrid make_grid(const PreparedCloud& cloud);
+
+Entry make_entry(CatalogEntry stored);
+
+// Every n-th point, so that about `count` are left; points of a thinned cloud lie evenly on the
+// surface.
+std::vector<std::uint32_t> spread(std::size_t size, std::size_t count);
+
+}  // namespace landmarkdb

@@ -1,0 +1,191 @@
+#include "engine/retrieval/localizer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "engine/base/error.hpp"
+#include "engine/cloud/resolution.hpp"
+#include "engine/retrieval/entry.hpp"
+#include "engine/retrieval/hypothesis.hpp"
+#include "engine/retrieval/level.hpp"
+#include "engine/retrieval/query_view.hpp"
+#include "engine/retrieval/search.hpp"
+#include "engine/retrieval/verdict.hpp"
+
+namespace landmarkdb {
+
+struct Localizer::State {
+  std::shared_ptr<const Catalog> catalog;
+  std::vector<Entry> entries;  // as in the catalogue
+  std::vector<Level> levels;
+};
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& field, const std::string& message) {
+  throw Error(ErrorCode::kInvalidArgument, message, field);
+}
+
+void check_options(const QueryOptions& options) {
+  const auto share = [](double v) { return std::isfinite(v) && v >= 0.0 && v <= 1.0; };
+  if (!share(options.min_confidence)) {
+    refuse("min_confidence",
+           "min-confidence is " + std::to_string(options.min_confidence) + ", want 0..1");
+  }
+  if (!share(options.ratio) || options.ratio == 0.0) {
+    refuse("ratio",
+           "ratio is " + std::to_string(options.ratio) + ", want more than 0 and at most 1");
+  }
+  constexpr std::uint32_t kMostAnswers = 100;
+  if (options.top < 1 || options.top > kMostAnswers) {
+    refuse("top", "top is " + std::to_string(options.top) + ", want 1..100");
+  }
+  if (options.up && !(options.up->allFinite() && options.up->norm() > 0.0)) {
+    refuse("up", "the up direction must be finite and longer than zero");
+  }
+  if (options.prior_T_scene_sensor &&
+      !(std::isfinite(options.prior_radius_m) && options.prior_radius_m > 0.0)) {
+    refuse(
+        "prior_radius",
+        "a prior needs a radius of more than 0 m, not " + std::to_string(options.prior_radius_m));
+  }
+}
+
+std::vector<bool> wanted_entries(std::span<const Entry> entries, const QueryOptions& options) {
+  if (options.scenes.empty()) return std::vector<bool>(entries.size(), true);
+  std::vector<bool> wanted(entries.size(), false);
+  for (const std::string& name : options.scenes) {
+    bool known = false;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (entries[i].record().name != name) continue;
+      wanted[i] = true;
+      known = true;
+    }
+    if (!known) throw Error(ErrorCode::kNotFound, "there is no scene '" + name + "'", "scene");
+  }
+  return wanted;
+}
+
+std::string nothing_left(const SearchResult& search,
+                         const CleanQuery& query,
+                         const ViewCache& views) {
+  if (search.lost_at == "density") {
+    return "keypoints: the cloud's points are " + std::to_string(query.spacing_m) +
+           " m apart, too far for every entry asked";
+  }
+  if (search.lost_at == "keypoints") {
+    return "keypoints: " + std::to_string(query.cloud.size()) + " points gave " +
+           std::to_string(views.keypoints()) +
+           " descriptors; is the cloud one plane, or too small a part?";
+  }
+  if (search.lost_at == "filter") return "filter: no four pairs that one motion explains were left";
+  return search.lost_at + ": no proposal lies on the surface of any entry";
+}
+
+void add_warnings(const CleanQuery& query,
+                  const Verdict& verdict,
+                  std::span<const Entry> entries,
+                  QueryResult& answer) {
+  if (units_look_wrong(measure_scale(query.cloud), EntryKind::kPlace)) {
+    answer.warnings.emplace_back("units_suspect");
+  }
+  if (verdict.judged.empty()) return;
+  const Assessed& best = verdict.judged[0].pose;
+  constexpr double kLowOverlap = 0.6;
+  constexpr double kPlanar = 0.003;  // a lone wall measures below, the dullest corner above
+  constexpr double kDensity = 3.0;
+  if (best.evidence.overlap < kLowOverlap) answer.warnings.emplace_back("low_overlap");
+  if (best.evidence.observability < kPlanar) answer.warnings.emplace_back("planar_scene");
+  answer.query.density_ratio =
+      query.spacing_m > 0.0 ? entries[best.entry].record().options.voxel_m / query.spacing_m : 1.0;
+  if (answer.query.density_ratio < 1.0 / kDensity) answer.warnings.emplace_back("density_mismatch");
+}
+
+// Hypotheses of the answer: for "ambiguous" every rival, otherwise the best and what came behind.
+void fill_hypotheses(const SearchInput& input,
+                     const SearchResult& search,
+                     const Verdict& verdict,
+                     QueryResult& answer) {
+  for (const Judged& judged : verdict.judged) {
+    if (answer.hypotheses.size() >= input.options.top) break;
+    answer.hypotheses.push_back(make_hypothesis(judged, input, search));
+  }
+  if (input.options.want_correspondences && !verdict.judged.empty()) {
+    answer.correspondences = list_correspondences(verdict.judged[0], input, search);
+  }
+}
+
+}  // namespace
+
+Localizer::Localizer(std::shared_ptr<const Catalog> catalog, const RunContext& context) {
+  auto state = std::make_unique<State>();
+  state->catalog = std::move(catalog);
+  const std::size_t total = state->catalog->entries.size();
+  state->entries.reserve(total);
+  for (std::size_t i = 0; i < total; ++i) {
+    context.report("index", i, total);
+    state->entries.push_back(make_entry(state->catalog->entries[i]));
+  }
+  state->levels = make_levels(state->entries);
+  state_ = std::move(state);
+}
+
+Localizer::~Localizer() = default;
+
+const Catalog& Localizer::catalog() const { return *state_->catalog; }
+
+QueryResult Localizer::query(const PointCloud& cloud,
+                             const QueryOptions& options,
+                             const RunContext& context) const {
+  check_options(options);
+  QueryResult answer;
+  const StageTimer total(answer.timings.total);
+  answer.seed = options.seed;
+  const std::vector<bool> wanted = wanted_entries(state_->entries, options);
+
+  context.report("preprocess", 0, 1);
+  const CleanQuery query = [&] {
+    const StageTimer timer(answer.timings.preprocess);
+    return clean_query(cloud);
+  }();
+  answer.query.points = query.counts.points;
+  answer.query.points_used = query.counts.used;
+  answer.query.invalid = query.counts.invalid();
+  constexpr std::size_t kFewest = 4;
+  if (query.cloud.size() < kFewest) {
+    answer.reason = "preprocess: " + std::to_string(query.cloud.size()) + " usable points of " +
+                    std::to_string(query.counts.points) + ", want at least 4";
+    return answer;
+  }
+  if (state_->entries.empty()) {
+    answer.reason = "match: the database has no scenes";
+    return answer;
+  }
+
+  ViewCache views(query, options.seed, context, answer.timings);
+  const SearchInput input{
+      query, options, state_->entries, state_->levels, wanted, views, answer.timings, context};
+  SearchResult search;
+  if (options.profile == Profile::kPaper) {
+    search_paper(input, search);
+  } else {
+    search_places(input, search);
+    search_objects(input, search);
+  }
+  answer.query.keypoints = views.keypoints();
+
+  VerdictOptions verdict_options;
+  verdict_options.min_confidence = options.min_confidence;
+  const Verdict verdict = judge(search.poses, state_->entries, query.centre, verdict_options);
+  answer.status = verdict.status;
+  if (answer.status == QueryStatus::kNotFound) {
+    answer.reason = search.poses.empty() ? nothing_left(search, query, views) : verdict.reason;
+  }
+  add_warnings(query, verdict, state_->entries, answer);
+  fill_hypotheses(input, search, verdict, answer);
+  return answer;
+}
+
+}  // namespace landmarkdb

@@ -1,0 +1,66 @@
+#include "engine/retrieval/query_view.hpp"
+
+#include <numbers>
+#include <utility>
+
+#include "engine/cloud/prepare_cloud.hpp"
+#include "engine/cloud/resolution.hpp"
+#include "engine/cloud/sanitise.hpp"
+#include "engine/features/describe_shot.hpp"
+#include "engine/features/detect_keypoints.hpp"
+#include "engine/retrieval/entry.hpp"
+#include "engine/retrieval/feature_options.hpp"
+
+namespace landmarkdb {
+
+namespace {
+
+// One degree: 9 cm at 5 m, and coarse enough that a thinned frame or a 16-line laser still fills
+// its rows.
+constexpr double kSightStepRad = std::numbers::pi / 180.0;
+constexpr std::size_t kTestPoints = 512;
+constexpr std::size_t kSamplePoints = 4000;
+
+}  // namespace
+
+CleanQuery clean_query(PointCloud cloud) {
+  const CloudCounts counts = sanitise(cloud);
+  if (cloud.viewpoints.empty()) {
+    cloud.viewpoints.emplace_back(-cloud.origin.cast<float>());
+    cloud.viewpoint_index.clear();
+  }
+  const double spacing_m = cloud.size() >= 4 ? measure_scale(cloud).spacing_m : 0.0;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3f& point : cloud.points) centre += point.cast<double>();
+  if (!cloud.empty()) centre /= static_cast<double>(cloud.size());
+  RangeImage ranges(cloud.points, cloud.viewpoints[0], kSightStepRad);
+  return {std::move(cloud), counts, spacing_m, centre, std::move(ranges)};
+}
+
+QueryView view_query(const CleanQuery& query,
+                     const FeatureOptions& options,
+                     std::uint64_t seed,
+                     const RunContext& context,
+                     StageTimings& timings) {
+  QueryView view;
+  {
+    const StageTimer timer(timings.preprocess);
+    view.prepared = prepare_cloud(
+        query.cloud, query.counts, {options.voxel_m, options.normal_radius_m}, context);
+    view.test = select_test_points(view.prepared.points, view.prepared.normals, kTestPoints, seed);
+    for (const std::uint32_t i : spread(view.prepared.size(), kSamplePoints)) {
+      view.sample_points.push_back(view.prepared.points[i]);
+      view.sample_normals.push_back(view.prepared.normals[i]);
+    }
+  }
+  Keypoints keypoints;
+  {
+    const StageTimer timer(timings.keypoints);
+    keypoints = detect_keypoints(view.prepared, keypoint_options(options), context);
+  }
+  const StageTimer timer(timings.describe);
+  view.descriptors = describe_shot(view.prepared, keypoints, options.shot_radius_m, context);
+  return view;
+}
+
+}  // namespace landmarkdb

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <functional>
+#include <list>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/run_context.hpp"
+#include "engine/registration/propose.hpp"
+#include "engine/retrieval/assess.hpp"
+#include "engine/retrieval/entry.hpp"
+#include "engine/retrieval/level.hpp"
+#include "engine/retrieval/query_view.hpp"
+#include "engine/types/correspondence.hpp"
+#include "engine/types/query.hpp"
+
+namespace landmarkdb {
+
+// The query at every resolution that was asked for, made on first use.
+class ViewCache {
+ public:
+  ViewCache(const CleanQuery& query,
+            std::uint64_t seed,
+            const RunContext& context,
+            StageTimings& timings)
+      : query_(query), seed_(seed), context_(context), timings_(timings) {}
+
+  const QueryView& at(const FeatureOptions& options);
+  std::size_t keypoints() const;  // of the finest view made
+
+ private:
+  struct Made {
+    FeatureOptions options;
+    QueryView view;
+  };
+  const CleanQuery& query_;
+  std::uint64_t seed_;
+  const RunContext& context_;
+  StageTimings& timings_;
+  std::list<Made> made_;  // a list: references stay valid
+};
+
+// What the searches share. `wanted[i]`: entry i may answer.
+struct SearchInput {
+  const CleanQuery& query;
+  const QueryOptions& options;
+  std::span<const Entry> entries;
+  std::span<const Level> levels;
+  const std::vector<bool>& wanted;
+  ViewCache& views;
+  StageTimings& timings;
+  const RunContext& context;
+};
+
+// The putative pairs of the query with one entry, and what each filter left of them.
+struct EntryMatches {
+  std::size_t entry = 0;
+  const QueryView* view = nullptr;
+  std::vector<Correspondence> putative;  // `query`: keypoint of the view, `target`: of the entry
+  std::vector<const char*> dropped_by;   // empty, or one a putative pair; "" where it was kept
+  CorrespondenceCounts counts;
+};
+
+struct SearchResult {
+  std::vector<EntryMatches> matches;
+  std::vector<Assessed> poses;  // finely assessed, in no order
+  std::string lost_at;          // the stage that had nothing left, when `poses` is empty
+};
+
+// The robust profile: every match proposes a pose through the two local reference frames, every
+// proposal is tested on the surface, the best are refined and assessed. Places first, then objects
+// in the query.
+void search_places(const SearchInput& input, SearchResult& result);
+void search_objects(const SearchInput& input, SearchResult& result);
+
+// The paper's way, place by place: nearest neighbours, ratio and slope filter, similarity by random
+// samples.
+void search_paper(const SearchInput& input, SearchResult& result);
+
+// The gravity that query and entry agree to use: nullopt where one of them does not know it.
+std::optional<Gravity> gravity_of(const QueryOptions& options, const SceneRecord& record);
+
+// Refines the ranked candidates of all entries in two passes and appends the best to
+// `result.poses`.
+struct Candidate {
+  std::size_t matches = 0;
+  Eigen::Isometry3d T_entry_sensor = Eigen::Isometry3d::Identity();
+  float score = 0.0F;
+  std::uint32_t correspondence = 0;
+};
+using MeetingOf = std::function<Meeting(const EntryMatches&)>;
+void assess_candidates(const SearchInput& input,
+                       std::vector<Candidate> candidates,
+                       const MeetingOf& meeting_of,
+                       SearchResult& result);
+
+}  // namespace landmarkdb

@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <memory>
+#include <unordered_map>
+#include <utility>
+
+#include "engine/matching/descriptor_index.hpp"
+#include "engine/registration/propose.hpp"
+#include "engine/retrieval/rank_poses.hpp"
+#include "engine/retrieval/search.hpp"
+
+namespace landmarkdb {
+
+namespace {
+
+constexpr std::size_t kNeighbours = 10;
+
+// Looks each of the object's descriptors up among the query's: the object is whole, the query is
+// clutter.
+EntryMatches match_object(const SearchInput& input, std::size_t e, const QueryView& view) {
+  const StageTimer timer(input.timings.match);
+  EntryMatches matches{.entry = e, .view = &view, .putative = {}, .dropped_by = {}, .counts = {}};
+  const auto index = make_exact_index(view.descriptors.values, Measure::kL2);
+  std::vector<DescriptorMatch> found;
+  index->search(input.entries[e].record().descriptors.values, kNeighbours, found, input.context);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].index == DescriptorMatch::kNone) continue;
+    matches.putative.push_back(
+        {found[i].index, static_cast<std::uint32_t>(i / kNeighbours), found[i].distance});
+  }
+  matches.counts.putative = static_cast<std::uint32_t>(matches.putative.size());
+  return matches;
+}
+
+// Proposals of the object in the query: the pairs turned round.
+std::vector<Proposal> propose_object(const EntryMatches& matches, const Entry& entry) {
+  std::vector<Correspondence> turned = matches.putative;
+  for (Correspondence& pair : turned) std::swap(pair.query, pair.target);
+  return propose_from_frames(
+      turned, matches.view->descriptors, entry.record().descriptors, std::nullopt, std::nullopt);
+}
+
+Eigen::Vector3d centre_of(const PreparedCloud& cloud) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3f& point : cloud.points) sum += point.cast<double>();
+  return sum / static_cast<double>(std::max<std::size_t>(cloud.size(), 1));
+}
+
+}  // namespace
+
+void search_objects(const SearchInput& input, SearchResult& result) {
+  std::vector<Candidate> candidates;
+  // The query as a surface, one grid a resolution.
+  std::unordered_map<const QueryView*, std::unique_ptr<SurfaceGrid>> grids;
+  for (std::size_t e = 0; e < input.entries.size(); ++e) {
+    const Entry& entry = input.entries[e];
+    if (!entry.is_object() || !input.wanted[e]) continue;
+    const QueryView& view = input.views.at(entry.record().options);
+    if (view.descriptors.size() == 0) continue;
+    auto& grid = grids[&view];
+    if (!grid) grid = std::make_unique<SurfaceGrid>(make_grid(view.prepared));
+    result.matches.push_back(match_object(input, e, view));
+    const StageTimer timer(input.timings.pose);
+    const std::vector<Proposal> proposals = propose_object(result.matches.back(), entry);
+    for (const RankedPose& ranked : rank_poses(
+             *grid, entry.test, proposals, centre_of(entry.record().prepared), {}, input.context)) {
+      candidates.push_back({result.matches.size() - 1,
+                            ranked.T_target_source.inverse(),
+                            ranked.score,
+                            ranked.correspondence});
+    }
+  }
+  if (candidates.empty()) {
+    if (result.lost_at.empty()) result.lost_at = result.matches.empty() ? "keypoints" : "pose";
+    return;
+  }
+  assess_candidates(
+      input,
+      std::move(candidates),
+      [&](const EntryMatches& matches) {
+        const PreparedCloud& object = input.entries[matches.entry].record().prepared;
+        return Meeting{.target = *grids.at(matches.view),
+                       .source = object.points,
+                       .source_normals = object.normals,
+                       .entry_is_source = true};
+      },
+      result);
+}
+
+}  // namespace landmarkdb

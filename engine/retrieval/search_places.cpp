@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/error.hpp"
+#include "engine/registration/propose.hpp"
+#include "engine/retrieval/rank_poses.hpp"
+#include "engine/retrieval/search.hpp"
+
+namespace landmarkdb {
+
+namespace {
+
+// Ten neighbours a keypoint did as well as 30 or 50 in one room; with more rooms the right one must
+// still be among them, so their number grows with the places searched at once, up to a bound.
+constexpr std::size_t kNeighbours = 10;
+constexpr std::size_t kMostNeighbours = 40;
+
+std::size_t neighbours_for(std::size_t places) {
+  return std::min(kMostNeighbours, kNeighbours + 5 * (places - 1));
+}
+
+// A query thinner than this has too few points in a descriptor's support to look like the entry's
+// surface.
+constexpr double kMostSpacingVoxels = 2.5;
+// A query of fewer voxels than this is too small a thing to be told apart at the entry's
+// resolution.
+constexpr std::size_t kFewestVoxels = 150;
+
+// The k nearest stored descriptors of each of the query's, sorted out by entry.
+void match_level(const SearchInput& input,
+                 const Level& level,
+                 const QueryView& view,
+                 SearchResult& result) {
+  const StageTimer timer(input.timings.match);
+  const std::size_t k = neighbours_for(level.entries.size());
+  std::vector<DescriptorMatch> found;
+  level.index->search(view.descriptors.values, k, found, input.context);
+  std::vector<EntryMatches> by_entry(level.entries.size());
+  for (std::size_t i = 0; i < by_entry.size(); ++i) {
+    by_entry[i].entry = level.entries[i];
+    by_entry[i].view = &view;
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].index == DescriptorMatch::kNone) continue;
+    const std::size_t place = level.entry_of_row(found[i].index);
+    by_entry[place].putative.push_back(
+        {static_cast<std::uint32_t>(i / k),
+         static_cast<std::uint32_t>(found[i].index - level.first_row[place]),
+         found[i].distance});
+  }
+  for (EntryMatches& matches : by_entry) {
+    if (!input.wanted[matches.entry] || matches.putative.empty()) continue;
+    matches.counts.putative = static_cast<std::uint32_t>(matches.putative.size());
+    result.matches.push_back(std::move(matches));
+  }
+}
+
+std::optional<PositionPrior> prior_of(const QueryOptions& options, const SceneRecord& record) {
+  if (!options.prior_T_scene_sensor) return std::nullopt;
+  PositionPrior prior;
+  prior.centre =
+      (options.prior_T_scene_sensor->translation() - record.prepared.origin).cast<float>();
+  prior.radius_m = static_cast<float>(options.prior_radius_m);
+  return prior;
+}
+
+void propose_and_rank(const SearchInput& input,
+                      std::size_t m,
+                      SearchResult& result,
+                      std::vector<Candidate>& candidates) {
+  const StageTimer timer(input.timings.pose);
+  const EntryMatches& matches = result.matches[m];
+  const Entry& entry = input.entries[matches.entry];
+  const std::vector<Proposal> proposals =
+      propose_from_frames(matches.putative,
+                          entry.record().descriptors,
+                          matches.view->descriptors,
+                          gravity_of(input.options, entry.record()),
+                          prior_of(input.options, entry.record()));
+  for (const RankedPose& ranked : rank_poses(
+           entry.grid, matches.view->test, proposals, input.query.centre, {}, input.context)) {
+    candidates.push_back({m, ranked.T_target_source, ranked.score, ranked.correspondence});
+  }
+}
+
+}  // namespace
+
+void search_places(const SearchInput& input, SearchResult& result) {
+  std::vector<Candidate> candidates;
+  for (const Level& level : input.levels) {
+    const bool asked = std::any_of(level.entries.begin(),
+                                   level.entries.end(),
+                                   [&](std::size_t entry) { return input.wanted[entry]; });
+    if (!asked) continue;
+    if (input.query.spacing_m > kMostSpacingVoxels * level.options.voxel_m) {
+      result.lost_at = "density";
+      continue;
+    }
+    const QueryView& view = input.views.at(level.options);
+    if (view.prepared.size() < kFewestVoxels || view.descriptors.size() == 0) continue;
+    const std::size_t first = result.matches.size();
+    match_level(input, level, view, result);
+    for (std::size_t m = first; m < result.matches.size(); ++m) {
+      propose_and_rank(input, m, result, candidates);
+    }
+  }
+  if (candidates.empty()) {
+    if (result.lost_at.empty()) result.lost_at = result.matches.empty() ? "keypoints" : "pose";
+    return;
+  }
+  assess_candidates(
+      input,
+      std::move(candidates),
+      [&](const EntryMatches& matches) {
+        return Meeting{.target = input.entries[matches.entry].grid,
+                       .source = matches.view->sample_points,
+                       .source_normals = matches.view->sample_normals};
+      },
+      result);
+}
+
+}  // namespace landmarkdb

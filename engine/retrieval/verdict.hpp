@@ -1,0 +1,43 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/retrieval/assess.hpp"
+#include "engine/types/query.hpp"
+
+namespace landmarkdb {
+
+// A pose that answers, with its confidence and its lead.
+struct Judged {
+  Assessed pose;
+  double confidence = 0.0;
+  double margin = 0.0;  // 1 - (best different pose's score) / (this one's)
+};
+
+struct Verdict {
+  QueryStatus status = QueryStatus::kNotFound;
+  std::string reason;  // for kNotFound
+  std::vector<Judged>
+      judged;  // best first; all that explain the query about equally well come first
+};
+
+struct VerdictOptions {
+  double min_confidence = 0.5;
+  // A rival whose score reaches this share of the best one's explains the query about as well.
+  double rival_share = 0.88;
+  // Two poses are different places when they are further apart than both (in cells: 0.5 m in a room
+  // described at 5 cm), or in different entries.
+  double different_translation_cells = 10.0;
+  double different_rotation_rad = 0.175;
+};
+
+// Judges the assessed poses of all entries against one another. `entries` says what each pose's
+// `entry` is; `centre` (sensor frame) is where two poses are compared.
+Verdict judge(std::vector<Assessed> assessed,
+              std::span<const Entry> entries,
+              const Eigen::Vector3d& centre,
+              const VerdictOptions& options);
+
+}  // namespace landmarkdb
