@@ -1,9 +1,11 @@
 #include "client/load_cloud.hpp"
 
-#include <stdexcept>
+#include <algorithm>
+#include <cstddef>
 
 #include "cli/usage_error.hpp"
 #include "client/choices.hpp"
+#include "engine/base/error.hpp"
 #include "engine/cloud/depth_image.hpp"
 #include "engine/cloud/read_cloud.hpp"
 #include "engine/geometry/camera.hpp"
@@ -26,10 +28,23 @@ PointCloud read(const std::filesystem::path& path, const LoadOptions& options) {
   return read_depth_image(path, read_camera(options.camera));
 }
 
+// Fewer points than fix a pose are a mistake, not a question: better said here, with the file's
+// name.
+void require_points(const std::filesystem::path& path, const PointCloud& cloud) {
+  constexpr std::ptrdiff_t kFewest = 4;
+  const std::ptrdiff_t usable = std::ranges::count_if(
+      cloud.points, [](const Eigen::Vector3f& point) { return point.allFinite(); });
+  if (usable >= kFewest) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              path.string() + ": " + std::to_string(usable) + " usable points of " +
+                  std::to_string(cloud.size()) + ", want at least " + std::to_string(kFewest));
+}
+
 }  // namespace
 
 PointCloud load_cloud(const std::filesystem::path& path, const LoadOptions& options) {
   PointCloud cloud = read(path, options);
+  require_points(path, cloud);
   if (options.viewpoint) {  // viewpoints are floats around the origin, as the points are
     const Eigen::Vector3d viewpoint_m = *options.viewpoint * metres_per(units_of(options.units));
     cloud.viewpoints = {(viewpoint_m - cloud.origin).cast<float>()};

@@ -17,7 +17,8 @@ struct LoadOptions {
   std::optional<Eigen::Vector3d> viewpoint;  // the cloud's own frame and units; replaces the file's
 };
 
-// Reads a cloud, mesh or depth image. Throws Error{kInvalidArgument} naming the file.
+// Reads a cloud, mesh or depth image. Throws Error{kInvalidArgument} naming the file, also when
+// fewer than four of its points are finite.
 PointCloud load_cloud(const std::filesystem::path& path, const LoadOptions& options);
 
 }  // namespace landmarkdb::client

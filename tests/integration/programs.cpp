@@ -21,6 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPoll = 5ms;
+constexpr auto kHealthPoll = 50ms;
 
 std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -131,7 +132,7 @@ ServerProcess::ServerProcess(const std::string& db,
                              const std::string& unix_path)
     : process_("landmarkdb-server", server_arguments(db, arguments, unix_path)) {
   const auto give_up = std::chrono::steady_clock::now() + 120s;
-  for (bool ready = false; !ready; std::this_thread::sleep_for(kPoll)) {
+  for (bool ready = false; !ready; std::this_thread::sleep_for(kHealthPoll)) {
     if (process_.ended() || std::chrono::steady_clock::now() > give_up) {
       throw std::runtime_error("the server does not get ready: " + process_.err_so_far());
     }
