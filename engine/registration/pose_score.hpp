@@ -28,7 +28,7 @@ TestPoints select_test_points(std::span<const Eigen::Vector3f> points,
 struct ScoreOptions {
   float sigma_cells = 1.0F;     // of the plane distance, in cells of the grid
   std::size_t first_look = 32;  // points after which a hopeless pose is given up
-  float hopeless = 0.25F;       // mean score of the first look below which it is
+  float hopeless = 0.15F;       // mean score of the first look below which it is
 };
 
 // How well the points lie on the surface under the pose: the mean over the first `count` test

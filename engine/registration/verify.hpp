@@ -14,12 +14,12 @@ namespace landmarkdb {
 
 // What a pose explains, and what speaks against it. Shares are 0..1.
 struct Evidence {
-  double overlap = 0.0;       // of the source points: on the target's surface, normals agreeing
-  double balanced = 0.0;      // the same, each surface direction weighted alike
-  double rmse_m = 0.0;        // of those points, to the surface
-  double explained = 0.0;      // of the directions where the entry predicts a range: it agrees
-  double crossed = 0.0;        // of the same: the sensor looked through the entry's surface
-  double coverage = 0.0;       // of the directions measured: the entry predicts a range
+  double overlap = 0.0;    // of the source points: on the target's surface, normals agreeing
+  double balanced = 0.0;   // the same, each surface direction weighted alike
+  double rmse_m = 0.0;     // of those points, to the surface
+  double explained = 0.0;  // of the directions where the entry predicts a range: it agrees
+  double crossed = 0.0;    // of the same: the sensor looked through the entry's surface
+  double coverage = 0.0;   // of the directions measured: the entry predicts a range
   double observability =
       0.0;  // weakest freedom: 0 none (a plane), 1 as strong as it gets (a ball of normals)
   Eigen::Vector3d strength =

@@ -45,14 +45,32 @@ double possible_in_place(const Evidence& evidence) {
   return std::max(evidence.coverage, kLeast);
 }
 
-// An object fills little of the view, half of it faces away, and clutter may stand before it.
+// An object fills little of the view, and clutter may stand before it.
 void expect_object(Evidence& evidence) {
   const double judged = evidence.explained + evidence.crossed;
   evidence.explained = judged > 0.0 ? evidence.explained / judged : 0.0;
   evidence.crossed = judged > 0.0 ? evidence.crossed / judged : 0.0;
   evidence.coverage = 1.0;
 }
-constexpr double kPossibleOfObject = 0.5;
+
+struct Patch {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+};
+
+// The part of an object's surface that faces the sensor: all of it that can be seen.
+Patch facing(const Meeting& object, const Eigen::Vector3d& viewpoint_object) {
+  constexpr float kGrazing = 0.2F;  // cosine: flatter surface is rarely measured
+  const Eigen::Vector3f sensor = viewpoint_object.cast<float>();
+  Patch patch;
+  for (std::size_t i = 0; i < object.source.size(); ++i) {
+    const Eigen::Vector3f ray = sensor - object.source[i];
+    if (object.source_normals[i].dot(ray) < kGrazing * ray.norm()) continue;
+    patch.points.push_back(object.source[i]);
+    patch.normals.push_back(object.source_normals[i]);
+  }
+  return patch;
+}
 
 }  // namespace
 
@@ -64,7 +82,8 @@ Assessed assess_coarse(const Meeting& meeting, const Eigen::Isometry3d& T_entry_
     normals.push_back(meeting.source_normals[i]);
   }
   IcpOptions options;
-  options.max_iterations = 12;
+  options.start_scale_cells = 2.5;
+  options.max_iterations = 20;
   Assessed assessed;
   assessed.T_entry_proposed = T_entry_sensor;
   assessed.icp = refine_icp(
@@ -82,35 +101,33 @@ void assess_fine(const Meeting& meeting,
                  const CleanQuery& query,
                  Assessed& assessed) {
   IcpOptions options;
-  options.start_scale_cells = 0.8;
-  options.max_iterations = 30;
+  options.max_iterations = 40;
   assessed.icp = refine_icp(meeting.target,
                             meeting.source,
                             meeting.source_normals,
                             turned(assessed.T_entry_sensor, meeting.entry_is_source),
                             options);
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
-  measure_overlap(meeting.target,
-                  meeting.source,
-                  meeting.source_normals,
-                  assessed.icp.T_target_source,
-                  {},
-                  assessed.evidence);
+  Evidence& evidence = assessed.evidence;
+  const Eigen::Vector3d viewpoint =
+      assessed.T_entry_sensor * query.cloud.viewpoints[0].cast<double>();
+  const Patch seen = meeting.entry_is_source ? facing(meeting, viewpoint) : Patch{};
+  using Vectors = std::span<const Eigen::Vector3f>;
+  const Vectors points = meeting.entry_is_source ? Vectors(seen.points) : meeting.source;
+  const Vectors normals = meeting.entry_is_source ? Vectors(seen.normals) : meeting.source_normals;
+  measure_overlap(meeting.target, points, normals, assessed.icp.T_target_source, {}, evidence);
   measure_sight(query.ranges,
                 entry.sight_points,
                 assessed.T_entry_sensor.inverse(),
                 entry.record().prepared.resolution_m,
                 {},
-                assessed.evidence);
-  assessed.evidence.observability =
+                evidence);
+  evidence.observability =
       observability(assessed.icp, extent_of(meeting.source), meeting.source.size());
-  double possible = kPossibleOfObject;
-  if (meeting.entry_is_source) {
-    expect_object(assessed.evidence);
-  } else {
-    possible = possible_in_place(assessed.evidence);
-  }
-  assessed.score = quality(assessed.evidence, possible, static_cast<double>(meeting.source.size()));
+  if (meeting.entry_is_source) expect_object(evidence);
+  assessed.score = quality(evidence,
+                           meeting.entry_is_source ? 1.0 : possible_in_place(evidence),
+                           static_cast<double>(points.size()));
 }
 
 }  // namespace landmarkdb

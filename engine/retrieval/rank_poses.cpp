@@ -20,15 +20,19 @@ std::vector<Scored> score_all(const SurfaceGrid& target,
                               std::size_t points,
                               std::span<const Proposal> proposals,
                               std::span<const std::uint32_t> which,
+                              float hopeless,
                               const RunContext& context) {
   std::vector<Scored> scored(which.size());
+  ScoreOptions score;
+  score.hopeless = hopeless;
   parallel_chunks(which.size(), context.threads, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kBetweenChecks = 4096;
     for (std::size_t i = begin; i < end; ++i) {
       if ((i - begin) % kBetweenChecks == 0) context.check("pose");
       const Proposal& proposal = proposals[which[i]];
       scored[i] = {
-          score_pose(target, test, points, proposal.R_target_source, proposal.t_target_source, {}),
+          score_pose(
+              target, test, points, proposal.R_target_source, proposal.t_target_source, score),
           which[i]};
     }
   });
@@ -65,14 +69,15 @@ std::vector<RankedPose> rank_poses(const SurfaceGrid& target,
   std::vector<std::uint32_t> all(proposals.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
   std::vector<Scored> scored =
-      score_all(target, test, options.first_points, proposals, all, context);
+      score_all(target, test, options.first_points, proposals, all, options.hopeless, context);
 
   std::vector<std::uint32_t> better;
   for (const Scored& s : scored) {
     if (better.size() >= options.kept_first || s.score <= 0.0F) break;
     better.push_back(s.proposal);
   }
-  scored = score_all(target, test, options.second_points, proposals, better, context);
+  scored =
+      score_all(target, test, options.second_points, proposals, better, options.hopeless, context);
 
   std::vector<RankedPose> ranked;
   for (const Scored& s : scored) {

@@ -1,6 +1,7 @@
 #include "engine/retrieval/search.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "engine/base/parallel.hpp"
@@ -10,8 +11,36 @@ namespace landmarkdb {
 
 namespace {
 
-constexpr std::size_t kCoarse = 60;  // candidates of all entries together that are refined at all
-constexpr std::size_t kFine = 12;    // those refined with every point, and judged
+// How many go on from one pass to the next: the best of all, and of the entries that do best a few
+// each, so that entries of different resolution, whose scores do not compare well, and look-alike
+// places all reach the finer test.
+struct Quota {
+  std::size_t best = 0;
+  std::size_t entries = 0;
+  std::size_t each = 0;
+};
+constexpr Quota kCoarse{.best = 60, .entries = 10, .each = 8};
+constexpr Quota kFine{.best = 12, .entries = 6, .each = 2};
+
+// Those of `sorted` (best first) that the quota lets through, in their order.
+template <typename Item, typename EntryOf>
+std::vector<Item> within_quota(const std::vector<Item>& sorted,
+                               const Quota& quota,
+                               const EntryOf& entry_of) {
+  std::map<std::size_t, std::size_t> taken;  // by entry
+  std::vector<Item> kept;
+  std::size_t seen = 0;
+  for (const Item& item : sorted) {
+    const auto known = taken.find(entry_of(item));
+    if (known == taken.end() && taken.size() >= quota.entries && seen >= quota.best) continue;
+    const std::size_t before = known == taken.end() ? 0 : known->second;
+    if (seen >= quota.best && before >= quota.each) continue;
+    ++taken[entry_of(item)];
+    ++seen;
+    kept.push_back(item);
+  }
+  return kept;
+}
 
 std::vector<Assessed> assess_all_coarse(const SearchInput& input,
                                         std::span<const Candidate> candidates,
@@ -35,27 +64,22 @@ std::vector<Assessed> assess_all_coarse(const SearchInput& input,
   return assessed;
 }
 
-// The best poses that refinement has not carried to the same place, and at least one of every entry
-// whose best comes close, so that look-alike places are compared with care.
+// The best poses, one of each group that refinement has carried to the same place.
 std::vector<Assessed> best_distinct(const std::vector<Assessed>& assessed,
                                     std::span<const Entry> entries,
                                     const Eigen::Vector3d& centre) {
-  std::vector<Assessed> kept;
+  constexpr double kSameCells = 2.0;
+  constexpr double kSameRad = 0.05;
+  std::vector<Assessed> distinct;
   for (const Assessed& candidate : assessed) {
-    if (kept.size() >= kFine) break;
-    const double cell_m = entries[candidate.entry].grid.cell_m();
-    constexpr double kSameCells = 2.0;
-    constexpr double kSameRad = 0.05;
-    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Assessed& other) {
-      return other.entry == candidate.entry && same_pose(candidate.T_entry_sensor,
-                                                         other.T_entry_sensor,
-                                                         centre,
-                                                         kSameCells * cell_m,
-                                                         kSameRad);
+    const double same_m = kSameCells * entries[candidate.entry].grid.cell_m();
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const Assessed& other) {
+      return other.entry == candidate.entry &&
+             same_pose(candidate.T_entry_sensor, other.T_entry_sensor, centre, same_m, kSameRad);
     });
-    if (!known) kept.push_back(candidate);
+    if (!known) distinct.push_back(candidate);
   }
-  return kept;
+  return within_quota(distinct, kFine, [](const Assessed& pose) { return pose.entry; });
 }
 
 }  // namespace
@@ -89,7 +113,9 @@ void assess_candidates(const SearchInput& input,
   std::stable_sort(candidates.begin(),
                    candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-  candidates.resize(std::min(candidates.size(), kCoarse));
+  candidates = within_quota(candidates, kCoarse, [&](const Candidate& candidate) {
+    return result.matches[candidate.matches].entry;
+  });
   std::vector<Assessed> assessed;
   {
     const StageTimer timer(input.timings.icp);

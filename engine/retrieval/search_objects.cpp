@@ -13,6 +13,8 @@ namespace landmarkdb {
 namespace {
 
 constexpr std::size_t kNeighbours = 10;
+// Half of an object faces away and clutter hides more: a third of its points found is a good start.
+constexpr float kHopeless = 0.08F;
 
 // Looks each of the object's descriptors up among the query's: the object is whole, the query is
 // clutter.
@@ -60,9 +62,15 @@ void search_objects(const SearchInput& input, SearchResult& result) {
     if (!grid) grid = std::make_unique<SurfaceGrid>(make_grid(view.prepared));
     result.matches.push_back(match_object(input, e, view));
     const StageTimer timer(input.timings.pose);
+    RankOptions rank;
+    rank.hopeless = kHopeless;
     const std::vector<Proposal> proposals = propose_object(result.matches.back(), entry);
-    for (const RankedPose& ranked : rank_poses(
-             *grid, entry.test, proposals, centre_of(entry.record().prepared), {}, input.context)) {
+    for (const RankedPose& ranked : rank_poses(*grid,
+                                               entry.test,
+                                               proposals,
+                                               centre_of(entry.record().prepared),
+                                               rank,
+                                               input.context)) {
       candidates.push_back({result.matches.size() - 1,
                             ranked.T_target_source.inverse(),
                             ranked.score,
