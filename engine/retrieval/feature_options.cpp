@@ -17,6 +17,8 @@ constexpr double kVoxelPerSpacing = 1.0;  // finer voxels would mostly be empty
 // A depth sensor that moves through a place measures to about a centimetre: finer voxels hold
 // noise.
 constexpr double kFinestPlaceVoxel = 0.025;
+// A depth camera sees some metres of a hall whatever the hall measures.
+constexpr double kCoarsestFromExtent = 0.05;
 constexpr double kLadderBase = 0.05;        // the ladder's steps are this times a power of sqrt(2)
 constexpr double kShotRadiusVoxels = 12.0;  // a descriptor's support; ten at least
 constexpr double kNormalRadiusVoxels = 2.5;
@@ -37,7 +39,9 @@ FeatureOptions derive_feature_options(const CloudScale& scale,
                                       std::optional<double> radius_m) {
   const double from_extent =
       kind == EntryKind::kPlace
-          ? std::max(kFinestPlaceVoxel, kPlaceVoxelAtOneMetre * std::sqrt(scale.extent_m))
+          ? std::max(
+                kFinestPlaceVoxel,
+                std::min(kCoarsestFromExtent, kPlaceVoxelAtOneMetre * std::sqrt(scale.extent_m)))
           : scale.extent_m / kObjectVoxelsAcross;
   FeatureOptions options;
   options.voxel_m =
