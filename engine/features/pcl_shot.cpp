@@ -3,6 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <pcl/features/shot.h>
 #include <pcl/features/shot_lrf.h>
 #include <pcl/point_cloud.h>

@@ -2,12 +2,14 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include "engine/base/random.hpp"
+#include "engine/types/features.hpp"
 #include "engine/types/point_cloud.hpp"
 
 namespace landmarkdb::testing {
