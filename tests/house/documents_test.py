@@ -9,6 +9,7 @@ digits of a pose do.
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -20,6 +21,7 @@ COMMANDS = re.compile(r"<!-- tested -->\n```sh\n(.*?)```", re.DOTALL)
 OUTPUT = re.compile(r"<!-- output -->\n```text\n(.*?)```", re.DOTALL)
 LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 NUMBER = re.compile(r"-?\d[\d.,e+-]*")
+LIMIT_S = 240  # a page; the whole test has 300
 # Jobs left in the background (a server) end with the shell.
 SHELL_HEAD = "set -euo pipefail\ntrap 'kill $(jobs -p) 2> /dev/null || true; wait' EXIT\n"
 
@@ -38,7 +40,7 @@ def run_blocks(page):
     script = SHELL_HEAD + "\n".join(COMMANDS.findall(text))
     environment = {**os.environ, "PATH": f"{BIN}:{os.environ['PATH']}"}
     with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run(
+        shell = subprocess.Popen(
             ["bash", "-c", script],
             cwd=folder,
             env=environment,
@@ -46,11 +48,15 @@ def run_blocks(page):
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            timeout=240,
-            check=False,
+            start_new_session=True,
         )
+        try:
+            printed, _ = shell.communicate(timeout=LIMIT_S)
+        except subprocess.TimeoutExpired:
+            os.killpg(shell.pid, signal.SIGKILL)  # its servers, too
+            printed = shell.communicate()[0] + f"\n(not done after {LIMIT_S} s)"
     expected = [line for block in OUTPUT.findall(text) for line in block.splitlines() if line.strip()]
-    return done, expected
+    return shell.returncode, printed, expected
 
 
 class Documents(unittest.TestCase):
@@ -59,11 +65,11 @@ class Documents(unittest.TestCase):
         self.assertIn(ROOT / "README.md", tested)
         for page in tested:
             with self.subTest(page=page.name):
-                done, expected = run_blocks(page)
-                self.assertEqual(0, done.returncode, done.stdout)
-                printed = {skeleton(line) for line in done.stdout.splitlines()}
-                missing = [line for line in expected if skeleton(line) not in printed]
-                self.assertEqual([], missing, f"{page.name} promises these lines; printed was:\n{done.stdout}")
+                status, printed, expected = run_blocks(page)
+                self.assertEqual(0, status, printed)
+                lines = {skeleton(line) for line in printed.splitlines()}
+                missing = [line for line in expected if skeleton(line) not in lines]
+                self.assertEqual([], missing, f"{page.name} promises these lines; printed was:\n{printed}")
 
     def test_links_between_pages_lead_somewhere(self):
         for page in pages():
