@@ -189,6 +189,7 @@ PointCloud sample_mesh(const Input& input, const Mesh& mesh, const ReadOptions& 
                std::to_string(mesh.triangles.size()) + " triangles has no area to sample");
   }
   const double each = area_per_sample(input, mesh, total, options);
+  if (!(each > 0.0)) refuse(input, "a mesh whose area is too small for double");
   const double sign = mesh.normals.empty() ? outward_sign(mesh) : 0.0;
   const bool colours = mesh.colours.size() == mesh.vertices.size();
   CloudBuilder builder(metres_per(options.units));
@@ -198,8 +199,9 @@ PointCloud sample_mesh(const Input& input, const Mesh& mesh, const ReadOptions& 
     due += triangle_area(mesh, triangle) / each;
     const double offset_u = random.uniform();
     const double offset_v = random.uniform();
-    for (std::uint64_t k = 0; due >= 1.0; ++k, due -= 1.0) {
-      if (builder.size() >= options.max_points) break;
+    const auto samples = static_cast<std::uint64_t>(due);
+    due -= static_cast<double>(samples);
+    for (std::uint64_t k = 0; k < samples && builder.size() < options.max_points; ++k) {
       const Barycentric at = spread(k, offset_u, offset_v);
       builder.add_point(blend(mesh.vertices, triangle, at));
       add_normal(builder, mesh, triangle, at, sign);

@@ -29,7 +29,7 @@ using KdTree = nanoflann::KDTreeSingleIndexAdaptor<
     3,
     std::uint32_t>;
 
-constexpr std::size_t kLeafPoints = 12;  // fastest of 8..24 on depth frames and fused maps
+constexpr std::size_t kLeafPoints = 12;  // near nanoflann's default of 10
 // The tree's lower bounds carry rounding errors; this much of slack makes the search exact again.
 constexpr float kBoundSlack = -1e-5F;
 
@@ -43,6 +43,7 @@ float just_above(float value) {
   return std::nextafter(value, std::numeric_limits<float>::infinity());
 }
 
+// NOLINTBEGIN(readability-identifier-naming): worstDist and addPoint are nanoflann's names.
 class NearestResult {
  public:
   NearestResult(std::size_t k, std::vector<Neighbour>& out) : k_(k), out_(out) {}
@@ -87,6 +88,8 @@ class WithinResult {
   float limit_;
   std::vector<Neighbour>& out_;
 };
+
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace
 
