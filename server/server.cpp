@@ -178,6 +178,7 @@ void Server::State::accept(Connection::Socket socket, std::string peer) {
 void Server::State::wait_for_signal() {
   signals.async_wait([this](const error_code& error, int number) {
     if (error) return;
+    wait_for_signal();  // before begin_stop(), which may cancel this wait
     if (number == SIGHUP) {
       log.write(LogLevel::kInfo, "reload on SIGHUP");
       load(false);
@@ -187,7 +188,6 @@ void Server::State::wait_for_signal() {
       log.write(LogLevel::kInfo, number == SIGTERM ? "stop on SIGTERM" : "stop on SIGINT");
       begin_stop();
     }
-    wait_for_signal();
   });
 }
 
