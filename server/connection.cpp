@@ -55,8 +55,8 @@ void Connection::on_read(const error_code& error, std::size_t bytes) {
     return;
   }
   if (phase_ == Phase::kOpen) {
-    last_heard_ = Clock::now();
-    if (!reader_.in_frame()) frame_start_ = last_heard_;
+    last_active_ = Clock::now();
+    if (!reader_.in_frame()) frame_start_ = last_active_;
     reader_.feed(std::string_view(read_buffer_.data(), bytes));
     take_frames();
     rearm_timer();
@@ -77,7 +77,7 @@ void Connection::take_frames() {
         }
         return;
       case FrameStatus::kFrame:
-        frame_start_ = last_heard_;  // of the one after it
+        frame_start_ = last_active_;  // of the one after it
         frame_bytes_ = 0;
         if (!reserve_memory(frame.payload.size())) {
           broken(ErrorCode::kResourceExhausted, "the server has no memory left for this message");
@@ -115,13 +115,13 @@ void Connection::rearm_timer() {
   Clock::time_point until;
   if (!greeted_) {
     until = started_ + limits_.hello_timeout;
-  } else if (reader_.in_frame()) {
+  } else if (reader_.in_frame() && !input_ended_) {
     const std::chrono::duration<double> transfer(static_cast<double>(frame_bytes_) /
                                                  static_cast<double>(limits_.min_bytes_per_s));
     until = frame_start_ + limits_.frame_timeout +
             std::chrono::duration_cast<Clock::duration>(transfer);
   } else {
-    until = (busy() || sending() ? Clock::now() : last_heard_) + limits_.idle_timeout;
+    until = (busy() || sending() ? Clock::now() : last_active_) + limits_.idle_timeout;
   }
   read_timer_.expires_at(until);
   read_timer_.async_wait(bound([this](const error_code& error) {
@@ -148,6 +148,7 @@ void Connection::send_frame(std::string frame) {
     cut("the client does not read its answers");
     return;
   }
+  last_active_ = Clock::now();
   outbox_bytes_ += frame.size();
   outbox_.push_back(std::move(frame));
   if (outbox_.size() == 1) write_front();

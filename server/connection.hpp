@@ -98,7 +98,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   boost::asio::steady_timer read_timer_;
   boost::asio::steady_timer write_timer_;
   Clock::time_point started_ = Clock::now();
-  Clock::time_point last_heard_ = Clock::now();
+  Clock::time_point last_active_ = Clock::now();
   Clock::time_point frame_start_;
   std::size_t frame_bytes_ = 0;  // of the frame being received, once its header is there
   MemoryBudget::Lease frame_memory_;

@@ -146,22 +146,24 @@ void Session::submit(v1::Envelope envelope, MemoryBudget::Lease memory) {
   OpenRequest& open = requests_[request_id];
   open.job = job;
   set_deadline(open);
-  // Throttled on the working thread, which is the only one to call this.
-  job->progress = [this,
-                   weak = weak_from_this(),
-                   request_id,
-                   interval = services_.options.connection.progress_interval,
-                   last = Clock::now()](const Progress& progress) mutable {
-    const Clock::time_point now = Clock::now();
-    if (now - last < interval) return;
-    last = now;
-    const auto alive = weak.lock();
-    if (!alive) return;
-    boost::asio::post(executor(),
-                      [this, alive, request_id, stage = std::string(progress.stage), progress] {
-                        report(request_id, {stage, progress.done, progress.total});
-                      });
-  };
+  // Throttled on the working thread, which is the only one to call this. Shared by the copies that
+  // are made of the callback.
+  job->progress =
+      [this,
+       weak = weak_from_this(),
+       request_id,
+       interval = services_.options.connection.progress_interval,
+       last = std::make_shared<Clock::time_point>(job->arrived)](const Progress& progress) {
+        const Clock::time_point now = Clock::now();
+        if (now - *last < interval) return;
+        *last = now;
+        const auto alive = weak.lock();
+        if (!alive) return;
+        boost::asio::post(executor(),
+                          [this, alive, request_id, stage = std::string(progress.stage), progress] {
+                            report(request_id, {stage, progress.done, progress.total});
+                          });
+      };
   services_.dispatcher.submit(job, [this, alive = self(), request_id](v1::Envelope answer) {
     boost::asio::dispatch(executor(), [this, alive, request_id, answer = std::move(answer)] {
       finish(request_id, answer);

@@ -47,7 +47,6 @@ class Session final : public Connection {
   struct OpenRequest {
     std::shared_ptr<Job> job;
     std::unique_ptr<boost::asio::steady_timer> deadline_timer;
-    Clock::time_point last_progress;
   };
 
   void on_frame(std::string_view payload, MemoryBudget::Lease memory) override;
