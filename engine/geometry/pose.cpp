@@ -111,6 +111,8 @@ std::optional<Similarity> estimate_similarity(std::span<const Eigen::Vector3d> t
     covariance += weight(i) / total * a * b.transpose();
     source_variance += weight(i) / total * b.squaredNorm();
   }
+  // Eigen leaves the factors of such a matrix as they were in memory.
+  if (!covariance.allFinite() || !std::isfinite(source_variance)) return std::nullopt;
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d d = svd.singularValues();
