@@ -32,7 +32,8 @@ std::array<double, 16> to_row_major(const Eigen::Matrix4d& T);
 Eigen::Isometry3d from_row_major(std::span<const double, 16> numbers);
 
 // Least-squares similarity `target = s R source + t` (Umeyama 1991); s = 1 unless `estimate_scale`.
-// Needs three finite pairs that are not collinear; nullopt otherwise. `weights`: empty, or one a pair.
+// Needs three finite pairs that are not collinear; nullopt otherwise. `weights`: empty, or one a
+// pair.
 struct Similarity {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d t = Eigen::Vector3d::Zero();
