@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bench/retrieval/funnel.hpp"
 #include "datasets/depth_camera.hpp"
 #include "datasets/place.hpp"
 #include "datasets/scanner.hpp"
@@ -30,7 +31,7 @@ struct Settings {
   std::uint64_t seed = 1000;
   std::size_t points = 600'000;  // a place
   bool gravity = false;
-  bool alone = false;  // each place is a catalogue of its own
+  bool funnel = false;  // say at which stage each frame was lost
   int threads = 2;
 };
 
@@ -169,13 +170,17 @@ int run(const Settings& settings) {
       catalog->entries.push_back(index_place(places.back(), settings, i, context));
   }
   const Localizer localizer(catalog, context);
+  std::vector<Entry> entries;
+  if (settings.funnel) {
+    for (const CatalogEntry& stored : catalog->entries) entries.push_back(make_entry(stored));
+  }
+  const std::vector<Level> levels = make_levels(entries);
   std::puts(
       "place,frame,spread,status,right,metres,degrees,confidence,quality,overlap,explained,"
       "coverage,"
       "crossed,margin,observability,ms");
   Tally all;
   Tally informative;
-  int stranger_accepts = 0;
   for (std::size_t p = 0; p < places.size(); ++p) {
     const bool known = p < static_cast<std::size_t>(settings.places);
     const auto poses = datasets::sample_camera_poses(
@@ -193,9 +198,19 @@ int run(const Settings& settings) {
           context,
           all,
           informative);
+      if (!settings.funnel || !known) continue;
+      QueryOptions options;
+      if (settings.gravity) options.up = frame.up_camera;
+      const Funnel funnel =
+          follow(frame.cloud, options, entries, levels, p, frame.T_scene_camera, context);
+      std::printf("#funnel keypoints %zu proposals %zu near %zu ranked %d assessed %d\n",
+                  funnel.keypoints,
+                  funnel.proposals,
+                  funnel.near_proposals,
+                  funnel.ranked,
+                  funnel.assessed);
     }
   }
-  (void)stranger_accepts;
   print("all", all);
   print("informative", informative);
   return 0;
@@ -215,6 +230,7 @@ int main(int argc, char** argv) {
   app.add_option("--seed", settings.seed, "Of the places, frames and noise");
   app.add_option("--points", settings.points, "Scanned points a place");
   app.add_flag("--gravity", settings.gravity, "Tell the query which way is up");
+  app.add_flag("--funnel", settings.funnel, "Say at which stage each frame was lost");
   app.add_option("--threads", settings.threads, "Threads");
   CLI11_PARSE(app, argc, argv);
   try {

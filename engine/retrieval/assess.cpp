@@ -36,7 +36,9 @@ double drawn_in(double share, double points) {
 // alone is fooled: overlap by bare walls, sight by an entry seen from outside.
 double quality(const Evidence& evidence, double possible, double points) {
   const double overlap = std::min(1.0, 0.5 * (evidence.overlap + evidence.balanced) / possible);
-  return drawn_in(overlap, points) * evidence.explained * evidence.explained;
+  const double in_view =
+      0.5 + 0.5 * evidence.coverage;  // what agrees in a corner of the view is half a proof
+  return drawn_in(overlap, points) * evidence.explained * evidence.explained * in_view;
 }
 
 // A place can hold what it was scanned for, and a query mostly outside of that is not half proved.

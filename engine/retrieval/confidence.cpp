@@ -13,7 +13,7 @@ double confidence_of(const Evidence& evidence, double quality, double margin) {
   constexpr double kFullObservability = 0.05;  // likewise
   const double lead = std::min(margin, kFullMargin);
   const double observed = std::min(1.0, evidence.observability / kFullObservability);
-  const double z = -24.0 + 1.3 * quality + 14.0 * lead - 2.0 * evidence.crossed + 2.8 * observed +
+  const double z = -26.2 + 1.3 * quality + 14.0 * lead - 2.0 * evidence.crossed + 5.0 * observed +
                    4.6 * evidence.coverage + 13.3 * evidence.explained;
   return 1.0 / (1.0 + std::exp(-z));
 }

@@ -1,0 +1,84 @@
+#include "bench/retrieval/funnel.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "engine/geometry/pose.hpp"
+#include "engine/registration/propose.hpp"
+#include "engine/retrieval/query_view.hpp"
+#include "engine/retrieval/rank_poses.hpp"
+#include "engine/retrieval/search.hpp"
+
+namespace landmarkdb::bench {
+
+namespace {
+
+constexpr double kNearMetres = 0.5;
+constexpr double kNearRad = 0.21;
+constexpr double kRightMetres = 0.10;
+constexpr double kRightRad = 0.0873;
+
+bool within(const Eigen::Isometry3d& T, const Eigen::Isometry3d& truth, double metres, double rad) {
+  return (T.translation() - truth.translation()).norm() <= metres &&
+         rotation_angle_rad(truth.linear().transpose() * T.linear()) <= rad;
+}
+
+Eigen::Isometry3d pose_of(const Proposal& proposal) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = proposal.R_target_source.cast<double>();
+  T.translation() = proposal.t_target_source.cast<double>();
+  return T;
+}
+
+}  // namespace
+
+Funnel follow(const PointCloud& cloud,
+              const QueryOptions& options,
+              std::span<const Entry> entries,
+              std::span<const Level> levels,
+              std::size_t right_entry,
+              const Eigen::Isometry3d& T_scene_sensor,
+              const RunContext& context) {
+  Funnel funnel;
+  StageTimings timings;
+  const CleanQuery query = clean_query(cloud);
+  ViewCache views(query, options.seed, context, timings);
+  const std::vector<bool> wanted(entries.size(), true);
+  const SearchInput input{query, options, entries, levels, wanted, views, timings, context};
+  SearchResult result;
+  search_places(input, result);
+  const Entry& entry = entries[right_entry];
+  Eigen::Isometry3d truth = T_scene_sensor;
+  truth.translation() -= entry.record().prepared.origin;
+  for (const EntryMatches& matches : result.matches) {
+    if (matches.entry != right_entry) continue;
+    const auto proposals = propose_from_frames(matches.putative,
+                                               entry.record().descriptors,
+                                               matches.view->descriptors,
+                                               gravity_of(options, entry.record()),
+                                               std::nullopt);
+    funnel.keypoints = matches.view->descriptors.size();
+    funnel.proposals = proposals.size();
+    for (const Proposal& proposal : proposals) {
+      funnel.near_proposals += within(pose_of(proposal), truth, kNearMetres, kNearRad) ? 1U : 0U;
+    }
+    const auto ranked =
+        rank_poses(entry.grid, matches.view->test, proposals, query.centre, {}, context);
+    for (std::size_t i = 0; i < ranked.size() && funnel.ranked < 0; ++i) {
+      if (within(ranked[i].T_target_source, truth, kNearMetres, kNearRad))
+        funnel.ranked = static_cast<int>(i);
+    }
+  }
+  std::sort(result.poses.begin(), result.poses.end(), [](const Assessed& a, const Assessed& b) {
+    return a.score > b.score;
+  });
+  for (std::size_t i = 0; i < result.poses.size() && funnel.assessed < 0; ++i) {
+    const Assessed& pose = result.poses[i];
+    if (pose.entry == right_entry && within(pose.T_entry_sensor, truth, kRightMetres, kRightRad)) {
+      funnel.assessed = static_cast<int>(i);
+    }
+  }
+  return funnel;
+}
+
+}  // namespace landmarkdb::bench

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "engine/base/run_context.hpp"
+#include "engine/retrieval/entry.hpp"
+#include "engine/retrieval/level.hpp"
+#include "engine/types/point_cloud.hpp"
+#include "engine/types/query.hpp"
+
+namespace landmarkdb::bench {
+
+// Where the right pose was still there. Near: within 0.5 m and 12 deg, what refinement can bring
+// home.
+struct Funnel {
+  std::size_t keypoints = 0;
+  std::size_t proposals = 0;
+  std::size_t near_proposals = 0;  // of all proposals of the right entry
+  int ranked = -1;                 // place of the first near one after testing; -1: lost
+  int assessed = -1;  // place by quality of the first right one after refinement; -1: lost
+};
+
+// Follows the right pose of a place through the search stage by stage.
+Funnel follow(const PointCloud& cloud,
+              const QueryOptions& options,
+              std::span<const Entry> entries,
+              std::span<const Level> levels,
+              std::size_t right_entry,
+              const Eigen::Isometry3d& T_scene_sensor,
+              const RunContext& context);
+
+}  // namespace landmarkdb::bench
