@@ -52,6 +52,9 @@ Hypothesis hypothesis(const v1::Hypothesis& h) {
   out.fit = {.overlap = h.fit().overlap(),
              .rmse_m = h.fit().rmse_m(),
              .free_space_violation = h.fit().free_space_violation(),
+             .explained = h.fit().explained(),
+             .coverage = h.fit().coverage(),
+             .quality = h.fit().quality(),
              .margin = h.fit().margin(),
              .observability = h.fit().observability()};
   out.covariance = matrix<6>(h.covariance(), "covariance");

@@ -59,7 +59,10 @@ Json hypothesis_json(const Hypothesis& h) {
                 {"rmse_m", h.fit.rmse_m},
                 {"free_space_violation", h.fit.free_space_violation},
                 {"margin", h.fit.margin},
-                {"observability", h.fit.observability}};
+                {"observability", h.fit.observability},
+                {"explained", h.fit.explained},
+                {"coverage", h.fit.coverage},
+                {"quality", h.fit.quality}};
   out["covariance"] = covariance_json(h.covariance);
   out["scene_version"] = h.scene_version;
   return out;

@@ -154,6 +154,9 @@ v1::Hypothesis hypothesis_message(const Hypothesis& hypothesis) {
   fit.set_free_space_violation(hypothesis.fit.free_space_violation);
   fit.set_margin(hypothesis.fit.margin);
   fit.set_observability(hypothesis.fit.observability);
+  fit.set_explained(hypothesis.fit.explained);
+  fit.set_coverage(hypothesis.fit.coverage);
+  fit.set_quality(hypothesis.fit.quality);
   add_row_major(hypothesis.covariance, *message.mutable_covariance());
   return message;
 }
