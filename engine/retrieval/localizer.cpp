@@ -45,6 +45,14 @@ void check_options(const QueryOptions& options) {
   if (options.up && !(options.up->allFinite() && options.up->norm() > 0.0)) {
     refuse("up", "the up direction must be finite and longer than zero");
   }
+  if (options.profile == Profile::kRobust && !options.filters.empty()) {
+    refuse("filters",
+           "filters belong to the profile paper: the robust one tests what every pair proposes");
+  }
+  if (options.profile == Profile::kRobust && options.estimate_scale) {
+    refuse("scale",
+           "scale is estimated by the profile paper only: the robust one takes both as metric");
+  }
   if (options.prior_T_scene_sensor &&
       !(std::isfinite(options.prior_radius_m) && options.prior_radius_m > 0.0)) {
     refuse(

@@ -98,6 +98,17 @@ std::size_t ViewCache::keypoints() const {
   return most;
 }
 
+FeatureOptions query_features(FeatureOptions of_entry, const QueryOptions& options) {
+  if (options.keypoints) of_entry.keypoints = *options.keypoints;
+  return of_entry;
+}
+
+std::unique_ptr<DescriptorIndex> make_index(std::span<const float> values,
+                                            const QueryOptions& options) {
+  return options.search == Search::kFlann ? make_flann_index(values, options.measure)
+                                          : make_exact_index(values, options.measure);
+}
+
 std::optional<Gravity> gravity_of(const QueryOptions& options, const SceneRecord& record) {
   if (!options.up || !record.up) return std::nullopt;
   Gravity gravity;

@@ -79,6 +79,14 @@ void search_objects(const SearchInput& input, SearchResult& result);
 // samples.
 void search_paper(const SearchInput& input, SearchResult& result);
 
+// How the query is described for an entry: as the entry was, but for the keypoints where they are
+// named.
+FeatureOptions query_features(FeatureOptions of_entry, const QueryOptions& options);
+
+// The index the options ask for, over rows of descriptors.
+std::unique_ptr<DescriptorIndex> make_index(std::span<const float> values,
+                                            const QueryOptions& options);
+
 // The gravity that query and entry agree to use: nullopt where one of them does not know it.
 std::optional<Gravity> gravity_of(const QueryOptions& options, const SceneRecord& record);
 

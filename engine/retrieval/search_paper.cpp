@@ -18,13 +18,6 @@ constexpr std::size_t kNeighbours = 2;  // the nearest and the one it is held ag
 // A keypoint is one in three voxels, and a pose from few pairs is off by more than one.
 constexpr double kResidualCells = 4.0;
 
-std::unique_ptr<DescriptorIndex> make_index(const SceneRecord& record,
-                                            const QueryOptions& options) {
-  return options.search == Search::kFlann
-             ? make_flann_index(record.descriptors.values, options.measure)
-             : make_exact_index(record.descriptors.values, options.measure);
-}
-
 bool uses(const QueryOptions& options, Filter filter) {
   // The paper's own: ratio, then slope.
   if (options.filters.empty()) return filter != Filter::kClique;
@@ -70,7 +63,7 @@ std::vector<Correspondence> match_and_filter(const SearchInput& input, EntryMatc
   std::vector<DescriptorMatch> found;
   {
     const StageTimer timer(input.timings.match);
-    make_index(input.entries[matches.entry].record(), input.options)
+    make_index(input.entries[matches.entry].record().descriptors.values, input.options)
         ->search(query.values, kNeighbours, found, input.context);
   }
   const StageTimer timer(input.timings.filter);
@@ -138,9 +131,9 @@ void search_paper(const SearchInput& input, SearchResult& result) {
   std::vector<Candidate> candidates;
   for (std::size_t e = 0; e < input.entries.size(); ++e) {
     if (!input.wanted[e]) continue;
-    FeatureOptions options = input.entries[e].record().options;
-    if (input.options.keypoints) options.keypoints = *input.options.keypoints;
-    const QueryView& view = input.views.at(options);
+    FeatureOptions features = query_features(input.entries[e].record().options, input.options);
+    if (!input.options.keypoints) features.keypoints = KeypointMethod::kNarf;
+    const QueryView& view = input.views.at(features);
     if (view.descriptors.size() == 0) continue;
     result.matches.push_back(
         {.entry = e, .view = &view, .putative = {}, .dropped_by = {}, .counts = {}});

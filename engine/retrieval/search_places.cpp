@@ -38,7 +38,12 @@ void match_level(const SearchInput& input,
   const StageTimer timer(input.timings.match);
   const std::size_t k = neighbours_for(level.entries.size());
   std::vector<DescriptorMatch> found;
-  level.index->search(view.descriptors.values, k, found, input.context);
+  // The level's own index is exact and Euclidean; another is made when it is asked for.
+  std::unique_ptr<DescriptorIndex> other;
+  if (input.options.measure != Measure::kL2 || input.options.search != Search::kExact) {
+    other = make_index(level.values, input.options);
+  }
+  (other ? *other : *level.index).search(view.descriptors.values, k, found, input.context);
   std::vector<EntryMatches> by_entry(level.entries.size());
   for (std::size_t i = 0; i < by_entry.size(); ++i) {
     by_entry[i].entry = level.entries[i];
@@ -100,7 +105,7 @@ void search_places(const SearchInput& input, SearchResult& result) {
       result.lost_at = "density";
       continue;
     }
-    const QueryView& view = input.views.at(level.options);
+    const QueryView& view = input.views.at(query_features(level.options, input.options));
     if (view.prepared.size() < kFewestVoxels || view.descriptors.size() == 0) continue;
     const std::size_t first = result.matches.size();
     match_level(input, level, view, result);
