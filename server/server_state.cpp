@@ -9,17 +9,21 @@ namespace landmarkdb {
 
 namespace {
 
+// What is in the database now; `previous` itself when nothing has changed since.
 std::shared_ptr<const Served> build(const std::string& db_path,
-                                    const Served* previous,
+                                    const std::shared_ptr<const Served>& previous,
                                     const RunContext& context) {
   auto served = std::make_shared<Served>();
   std::shared_ptr<const Catalog> catalog;
   {
     const Store store = Store::open_read_only(db_path);
+    if (previous && previous->damaged.empty() && previous->generation == store.generation()) {
+      return previous;
+    }
     catalog = store.load_catalog(
         context,
         [&](const DamagedScene& scene) { served->damaged.push_back(scene); },
-        previous != nullptr ? &previous->localizer->catalog() : nullptr);
+        previous ? &previous->localizer->catalog() : nullptr);
   }
   served->localizer = std::make_shared<const Localizer>(catalog, context);
   served->generation = catalog->generation;
@@ -51,7 +55,7 @@ std::shared_ptr<const Served> ServerState::reload(const RunContext& context) {
   const std::lock_guard one_at_a_time(reload_mutex_);
   try {
     const std::shared_ptr<const Served> previous = served_or_null();
-    std::shared_ptr<const Served> next = build(db_path_, previous.get(), context);
+    std::shared_ptr<const Served> next = build(db_path_, previous, context);
     const std::lock_guard lock(mutex_);
     served_ = next;
     failure_.clear();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <arpa/inet.h>
+#include <google/protobuf/stubs/logging.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -21,6 +22,9 @@
 namespace landmarkdb::testing {
 
 namespace {
+
+// Mutated messages would fill the output with protobuf's own complaints.
+[[maybe_unused]] auto* const kQuiet = google::protobuf::SetLogHandler(nullptr);
 
 SyntheticScene small_room(std::uint64_t seed) {
   return make_scene({.seed = seed, .furniture = 8, .stations = 2, .rays = 8'000});
