@@ -23,7 +23,11 @@ std::vector<Proposal> propose_from_frames(std::span<const Correspondence> corres
     }
     proposal.t_target_source =
         target.keypoints[pair.target] - proposal.R_target_source * source.keypoints[pair.query];
-    if (prior && (proposal.t_target_source - prior->centre).norm() > prior->radius_m) continue;
+    if (prior) {
+      const Eigen::Vector3f sensor =
+          proposal.R_target_source * prior->sensor_source + proposal.t_target_source;
+      if ((sensor - prior->centre).norm() > prior->radius_m) continue;
+    }
     proposals.push_back(proposal);
   }
   return proposals;

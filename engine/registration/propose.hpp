@@ -22,8 +22,10 @@ struct Gravity {
       0.9397F;  // 20 deg: what a local reference frame is off by at most, when it is right
 };
 
-// Where the source's frame origin is expected, target frame.
+// Where the sensor is expected: `centre` in the target frame, for what is `sensor_source` in the
+// source's.
 struct PositionPrior {
+  Eigen::Vector3f sensor_source = Eigen::Vector3f::Zero();
   Eigen::Vector3f centre = Eigen::Vector3f::Zero();
   float radius_m = 0.0F;
 };

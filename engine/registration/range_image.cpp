@@ -105,7 +105,8 @@ SightCounts RangeImage::compare(std::span<const Eigen::Vector3f> surface,
     if (!(range > 0.0F) || range > reach) continue;
     const Place place = place_of(ray);
     const float half_patch = 0.5F * patch_m / (range * static_cast<float>(step_rad_));
-    const int half = std::min(kWidestPatch, static_cast<int>(half_patch + 0.5F));
+    const int half =
+        static_cast<int>(std::min(static_cast<float>(kWidestPatch), half_patch + 0.5F));
     for (int row = std::max(0, place.row - half); row <= std::min(side_ - 1, place.row + half);
          ++row) {
       for (int column = std::max(0, place.column - half);

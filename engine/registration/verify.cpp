@@ -88,7 +88,11 @@ void measure_sight(const RangeImage& ranges,
   const auto share = [](std::size_t part, std::size_t whole) {
     return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
   };
-  evidence.explained = share(counts.agree, counts.predicted());
+  // A view of a few directions proves little: it is drawn towards a half, as if these had been seen
+  // too.
+  constexpr std::size_t kPriorDirections = 50;
+  evidence.explained =
+      share(2 * counts.agree + kPriorDirections, 2 * (counts.predicted() + kPriorDirections));
   evidence.crossed = share(counts.crossed, counts.predicted());
   evidence.coverage = share(counts.predicted(), counts.measured);
 }

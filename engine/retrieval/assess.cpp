@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/retrieval/rank_poses.hpp"
+
 namespace landmarkdb {
 
 namespace {
@@ -76,6 +78,23 @@ Patch facing(const Meeting& object, const Eigen::Vector3d& viewpoint_object) {
 
 }  // namespace
 
+bool same_spot(const Assessed& a,
+               const Assessed& b,
+               const Entry& entry,
+               const Eigen::Vector3d& query_centre,
+               double translation_m,
+               double rotation_rad) {
+  if (a.entry != b.entry) return false;
+  return entry.is_object()
+             ? same_pose(a.T_entry_sensor.inverse(),
+                         b.T_entry_sensor.inverse(),
+                         entry.centre,
+                         translation_m,
+                         rotation_rad)
+             : same_pose(
+                   a.T_entry_sensor, b.T_entry_sensor, query_centre, translation_m, rotation_rad);
+}
+
 Assessed assess_coarse(const Meeting& meeting, const Eigen::Isometry3d& T_entry_sensor) {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
@@ -111,6 +130,7 @@ void assess_fine(const Meeting& meeting,
                             options);
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
   Evidence& evidence = assessed.evidence;
+  evidence = {};
   const Eigen::Vector3d viewpoint =
       assessed.T_entry_sensor * query.cloud.viewpoints[0].cast<double>();
   const Patch seen = meeting.entry_is_source ? facing(meeting, viewpoint) : Patch{};

@@ -28,6 +28,15 @@ struct Assessed {
   double score = 0.0;  // 0..1, for ranking and for telling rivals
 };
 
+// True when the two poses are of one entry and carry what they locate to the same spot, turned
+// alike: of a place the query's centre (sensor frame), of an object its own.
+bool same_spot(const Assessed& a,
+               const Assessed& b,
+               const Entry& entry,
+               const Eigen::Vector3d& query_centre,
+               double translation_m,
+               double rotation_rad);
+
 // Where the query's surface and the entry's meet: for a place the query's points lie on the entry's
 // surface; for an object the object's points lie on the query's.
 struct Meeting {

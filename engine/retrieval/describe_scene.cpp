@@ -83,7 +83,7 @@ std::optional<Eigen::Vector3d> unit_up(const std::optional<Eigen::Vector3d>& up)
     throw Error(
         ErrorCode::kInvalidArgument, "the up direction must be finite and longer than zero", "up");
   }
-  return up->normalized();
+  return up->stableNormalized();
 }
 
 }  // namespace

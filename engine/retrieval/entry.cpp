@@ -1,6 +1,7 @@
 #include "engine/retrieval/entry.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace landmarkdb {
@@ -32,7 +33,17 @@ Entry make_entry(CatalogEntry stored) {
   Entry entry{.stored = std::move(stored),
               .grid = make_grid(cloud),
               .test = select_test_points(cloud.points, cloud.normals, kTestPoints, kSeed),
-              .sight_points = {}};
+              .sight_points = {},
+              .centre = Eigen::Vector3d::Zero(),
+              .extent_m = 0.0};
+  for (const Eigen::Vector3f& point : cloud.points) entry.centre += point.cast<double>();
+  const auto points = static_cast<double>(std::max<std::size_t>(cloud.size(), 1));
+  entry.centre /= points;
+  double squares = 0.0;
+  for (const Eigen::Vector3f& point : cloud.points) {
+    squares += (point.cast<double>() - entry.centre).squaredNorm();
+  }
+  entry.extent_m = 2.0 * std::sqrt(squares / points);
   for (const std::uint32_t i : spread(cloud.size(), kSightPoints)) {
     entry.sight_points.push_back(cloud.points[i]);
   }

@@ -18,6 +18,8 @@ struct Entry {
   SurfaceGrid grid;
   TestPoints test;                            // of the entry's own surface, for objects
   std::vector<Eigen::Vector3f> sight_points;  // spread over the whole surface, for free space
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean of the points
+  double extent_m = 0.0;                             // twice the root mean square distance from it
 
   const SceneRecord& record() const { return *stored.record; }
   bool is_object() const { return stored.record->kind == EntryKind::kObject; }

@@ -33,8 +33,8 @@ ChainResult chain_of(const Judged& judged, const SearchInput& input, const Entry
                      .estimate_scale = input.options.estimate_scale});
 }
 
-// Inverse of the information, freedom by freedom: one that the surface does not fix gets the
-// variance of a slide by the extent of the query instead of infinity.
+// Inverse of the information, freedom by freedom: one that the surface does not fix gets a large
+// variance instead of an infinite one.
 Eigen::Matrix<double, 6, 6> bounded_inverse(const Eigen::Matrix<double, 6, 6>& information,
                                             double largest_variance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(information);
@@ -48,16 +48,27 @@ Eigen::Matrix<double, 6, 6> bounded_inverse(const Eigen::Matrix<double, 6, 6>& i
 
 // Covariance of the sensor's position and of its rotation, both in the scene's axes. The residuals
 // of neighbouring points are not independent: about kCorrelated of them make one observation.
-Eigen::Matrix<double, 6, 6> covariance_of(const Assessed& pose, double cell_m) {
+Eigen::Matrix<double, 6, 6> covariance_of(const Assessed& pose,
+                                          const Entry& entry,
+                                          const Eigen::Vector3d& sensor) {
   constexpr double kCorrelated = 25.0;
   constexpr double kLargestVariance = 1.0;  // m^2, rad^2
   const IcpResult& icp = pose.icp;
+  const double cell_m = entry.grid.cell_m();
   const double floor_m2 = 0.01 * cell_m * cell_m;  // a tenth of a voxel: what thinning alone leaves
   const Eigen::Matrix<double, 6, 6> information =
       icp.information / (kCorrelated * std::max(icp.noise_m2, floor_m2));
-  const Eigen::Matrix<double, 6, 6> about_centre = bounded_inverse(information, kLargestVariance);
+  Eigen::Matrix<double, 6, 6> about_centre = bounded_inverse(information, kLargestVariance);
+  Eigen::Vector3d centre = icp.centre_target;
+  if (entry.is_object()) {  // refined the other way round: the object in the query's frame
+    Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+    turn.topLeftCorner<3, 3>() = pose.T_entry_sensor.linear();
+    turn.bottomRightCorner<3, 3>() = pose.T_entry_sensor.linear();
+    about_centre = turn * about_centre * turn.transpose();
+    centre = pose.T_entry_sensor * centre;
+  }
   // A turn w about the centre carries the sensor by w x (p - centre).
-  const Eigen::Vector3d arm = pose.T_entry_sensor.translation() - icp.centre_target;
+  const Eigen::Vector3d arm = pose.T_entry_sensor * sensor - centre;
   Eigen::Matrix<double, 6, 6> J = Eigen::Matrix<double, 6, 6>::Identity();
   J.topRightCorner<3, 3>() << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
   return J * about_centre * J.transpose();
@@ -132,7 +143,7 @@ Hypothesis make_hypothesis(const Judged& judged,
                     .quality = pose.score,
                     .margin = judged.margin,
                     .observability = pose.evidence.observability};
-  hypothesis.covariance = covariance_of(pose, entry.grid.cell_m());
+  hypothesis.covariance = covariance_of(pose, entry, -input.query.cloud.origin);
   return hypothesis;
 }
 

@@ -9,24 +9,33 @@ std::size_t Level::entry_of_row(std::size_t row) const {
   return static_cast<std::size_t>(above - first_row.begin()) - 1;
 }
 
+Level make_level(std::span<const Entry> entries, std::span<const std::size_t> chosen) {
+  Level level{.options = {}, .entries = {}, .first_row = {0}, .values = {}, .index = {}};
+  for (const std::size_t entry : chosen) {
+    level.options = entries[entry].record().options;
+    const std::vector<float>& values = entries[entry].record().descriptors.values;
+    level.entries.push_back(entry);
+    level.values.insert(level.values.end(), values.begin(), values.end());
+    level.first_row.push_back(level.values.size() / kShotLength);
+  }
+  level.index = make_exact_index(level.values, Measure::kL2);
+  return level;
+}
+
 std::vector<Level> make_levels(std::span<const Entry> entries) {
-  std::vector<Level> levels;
+  std::vector<std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (entries[i].is_object()) continue;
     const FeatureOptions& options = entries[i].record().options;
-    auto level = std::find_if(
-        levels.begin(), levels.end(), [&](const Level& other) { return other.options == options; });
-    if (level == levels.end()) {
-      levels.push_back(
-          Level{.options = options, .entries = {}, .first_row = {0}, .values = {}, .index = {}});
-      level = levels.end() - 1;
-    }
-    const std::vector<float>& values = entries[i].record().descriptors.values;
-    level->entries.push_back(i);
-    level->values.insert(level->values.end(), values.begin(), values.end());
-    level->first_row.push_back(level->values.size() / kShotLength);
+    auto group =
+        std::find_if(groups.begin(), groups.end(), [&](const std::vector<std::size_t>& other) {
+          return entries[other.front()].record().options == options;
+        });
+    if (group == groups.end()) group = groups.insert(groups.end(), std::vector<std::size_t>{});
+    group->push_back(i);
   }
-  for (Level& level : levels) level.index = make_exact_index(level.values, Measure::kL2);
+  std::vector<Level> levels;
+  for (const std::vector<std::size_t>& group : groups) levels.push_back(make_level(entries, group));
   return levels;
 }
 

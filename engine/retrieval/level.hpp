@@ -29,4 +29,8 @@ struct Level {
 // levels: they are looked for in the query, not the query in them.
 std::vector<Level> make_levels(std::span<const Entry> entries);
 
+// The level of some of these entries alone (indices, ascending, all places described alike): what
+// is asked of named scenes must not depend on the others.
+Level make_level(std::span<const Entry> entries, std::span<const std::size_t> chosen);
+
 }  // namespace landmarkdb

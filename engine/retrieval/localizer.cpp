@@ -54,7 +54,8 @@ void check_options(const QueryOptions& options) {
            "scale is estimated by the profile paper only: the robust one takes both as metric");
   }
   if (options.prior_T_scene_sensor &&
-      !(std::isfinite(options.prior_radius_m) && options.prior_radius_m > 0.0)) {
+      !(options.prior_T_scene_sensor->matrix().allFinite() &&
+        std::isfinite(options.prior_radius_m) && options.prior_radius_m > 0.0)) {
     refuse(
         "prior_radius",
         "a prior needs a radius of more than 0 m, not " + std::to_string(options.prior_radius_m));
@@ -89,7 +90,25 @@ std::string nothing_left(const SearchResult& search,
            " descriptors; is the cloud one plane, or too small a part?";
   }
   if (search.lost_at == "filter") return "filter: no four pairs that one motion explains were left";
-  return search.lost_at + ": no proposal lies on the surface of any entry";
+  return (search.lost_at.empty() ? "pose" : search.lost_at) +
+         ": no proposal lies on the surface of any entry";
+}
+
+// Drops the poses that contradict what the asker knows; refinement and the paper's search do not
+// look at it.
+void keep_expected(const SearchInput& input, std::vector<Assessed>& poses) {
+  const QueryOptions& options = input.options;
+  std::erase_if(poses, [&](const Assessed& pose) {
+    const SceneRecord& record = input.entries[pose.entry].record();
+    if (const std::optional<Gravity> gravity = gravity_of(options, record)) {
+      const Eigen::Vector3f up = pose.T_entry_sensor.linear().cast<float>() * gravity->up_source;
+      if (up.dot(gravity->up_target) < gravity->min_cosine) return true;
+    }
+    if (!options.prior_T_scene_sensor) return false;
+    const Eigen::Vector3d sensor =
+        pose.T_entry_sensor * Eigen::Vector3d(-input.query.cloud.origin) + record.prepared.origin;
+    return (sensor - options.prior_T_scene_sensor->translation()).norm() > options.prior_radius_m;
+  });
 }
 
 void add_warnings(const CleanQuery& query,
@@ -183,6 +202,7 @@ QueryResult Localizer::query(const PointCloud& cloud,
     search_objects(input, search);
   }
   answer.query.keypoints = views.keypoints();
+  keep_expected(input, search.poses);
 
   VerdictOptions verdict_options;
   verdict_options.min_confidence = options.min_confidence;

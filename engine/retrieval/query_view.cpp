@@ -20,6 +20,18 @@ namespace {
 constexpr double kSightStepRad = std::numbers::pi / 180.0;
 constexpr std::size_t kTestPoints = 512;
 constexpr std::size_t kSamplePoints = 4000;
+// Keypoints of one view: a whole turn of a 64-line laser has 14,000, and each costs 1.4 KB and its
+// proposals.
+constexpr std::size_t kMostKeypoints = 15'000;
+
+Keypoints spread_keypoints(const Keypoints& keypoints) {
+  if (keypoints.size() <= kMostKeypoints) return keypoints;
+  Keypoints kept;
+  for (const std::uint32_t i : spread(keypoints.size(), kMostKeypoints)) {
+    kept.index.push_back(keypoints.index[i]);
+  }
+  return kept;
+}
 
 }  // namespace
 
@@ -56,7 +68,8 @@ QueryView view_query(const CleanQuery& query,
   Keypoints keypoints;
   {
     const StageTimer timer(timings.keypoints);
-    keypoints = detect_keypoints(view.prepared, keypoint_options(options), context);
+    keypoints =
+        spread_keypoints(detect_keypoints(view.prepared, keypoint_options(options), context));
   }
   const StageTimer timer(timings.describe);
   view.descriptors = describe_shot(view.prepared, keypoints, options.shot_radius_m, context);

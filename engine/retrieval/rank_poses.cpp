@@ -1,6 +1,7 @@
 #include "engine/retrieval/rank_poses.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/parallel.hpp"
 #include "engine/geometry/pose.hpp"
@@ -42,6 +43,42 @@ std::vector<Scored> score_all(const SurfaceGrid& target,
   return scored;
 }
 
+// The best proposals, but only so many of each place: a right pose is proposed hundreds of times,
+// and the look-alike it must be held against has to reach the finer test too.
+std::vector<std::uint32_t> best_of_each_place(std::span<const Scored> sorted,
+                                              std::span<const Proposal> proposals,
+                                              const Eigen::Vector3d& centre,
+                                              double cell_m,
+                                              const RankOptions& options) {
+  struct Group {
+    Eigen::Vector3f centre;
+    Eigen::Matrix3f R;
+    std::size_t members = 0;
+  };
+  const Eigen::Vector3f middle = centre.cast<float>();
+  const auto apart = static_cast<float>(options.group_translation_cells * cell_m);
+  const auto least_trace = static_cast<float>(1.0 + 2.0 * std::cos(options.group_rotation_rad));
+  std::vector<Group> groups;
+  std::vector<std::uint32_t> kept;
+  for (const Scored& scored : sorted) {
+    if (kept.size() >= options.kept_first || scored.score <= 0.0F) break;
+    const Proposal& proposal = proposals[scored.proposal];
+    const Eigen::Vector3f there = proposal.R_target_source * middle + proposal.t_target_source;
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& other) {
+      return (other.centre - there).squaredNorm() <= apart * apart &&
+             other.R.cwiseProduct(proposal.R_target_source).sum() >= least_trace;  // trace(R^T R')
+    });
+    if (group == groups.end()) {
+      groups.push_back({there, proposal.R_target_source, 0});
+      group = groups.end() - 1;
+    }
+    if (group->members >= options.kept_of_group) continue;
+    ++group->members;
+    kept.push_back(scored.proposal);
+  }
+  return kept;
+}
+
 Eigen::Isometry3d pose_of(const Proposal& proposal) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = nearest_rotation(proposal.R_target_source.cast<double>());
@@ -71,11 +108,8 @@ std::vector<RankedPose> rank_poses(const SurfaceGrid& target,
   std::vector<Scored> scored =
       score_all(target, test, options.first_points, proposals, all, options.hopeless, context);
 
-  std::vector<std::uint32_t> better;
-  for (const Scored& s : scored) {
-    if (better.size() >= options.kept_first || s.score <= 0.0F) break;
-    better.push_back(s.proposal);
-  }
+  const std::vector<std::uint32_t> better =
+      best_of_each_place(scored, proposals, centre, target.cell_m(), options);
   scored =
       score_all(target, test, options.second_points, proposals, better, options.hopeless, context);
 

@@ -19,6 +19,9 @@ struct RankOptions {
   std::size_t first_points = 96;    // of the test points, for every proposal
   std::size_t second_points = 400;  // for those that did well
   std::size_t kept_first = 400;
+  std::size_t kept_of_group = 12;  // of those, at most so many of one place
+  double group_translation_cells = 10.0;
+  double group_rotation_rad = 0.175;
   std::size_t kept_last = 40;  // distinct ones, to be refined
   float hopeless = 0.15F;  // mean score of the first few points below which a proposal is given up
   double same_translation_cells = 4.0;  // proposals closer than both are one

@@ -4,8 +4,9 @@
 #include <map>
 #include <utility>
 
+#include "engine/base/error.hpp"
 #include "engine/base/parallel.hpp"
-#include "engine/retrieval/rank_poses.hpp"
+#include "engine/retrieval/verdict.hpp"
 
 namespace landmarkdb {
 
@@ -64,20 +65,27 @@ std::vector<Assessed> assess_all_coarse(const SearchInput& input,
   return assessed;
 }
 
-// The best poses, one of each group that refinement has carried to the same place.
+// The best poses, one of each that refinement has carried to the same spot, and only so many of
+// what the verdict takes for one place, so that its rivals are looked at as closely.
 std::vector<Assessed> best_distinct(const std::vector<Assessed>& assessed,
                                     std::span<const Entry> entries,
                                     const Eigen::Vector3d& centre) {
   constexpr double kSameCells = 2.0;
   constexpr double kSameRad = 0.05;
+  constexpr std::ptrdiff_t kMostOfOnePlace = 3;
+  const VerdictOptions place;
   std::vector<Assessed> distinct;
   for (const Assessed& candidate : assessed) {
-    const double same_m = kSameCells * entries[candidate.entry].grid.cell_m();
-    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const Assessed& other) {
-      return other.entry == candidate.entry &&
-             same_pose(candidate.T_entry_sensor, other.T_entry_sensor, centre, same_m, kSameRad);
-    });
-    if (!known) distinct.push_back(candidate);
+    const Entry& entry = entries[candidate.entry];
+    const auto like = [&](double metres, double rad) {
+      return std::count_if(distinct.begin(), distinct.end(), [&](const Assessed& other) {
+        return same_spot(candidate, other, entry, centre, metres, rad);
+      });
+    };
+    if (like(kSameCells * entry.grid.cell_m(), kSameRad) > 0) continue;
+    if (like(place_radius_m(entry, place), place.different_rotation_rad) >= kMostOfOnePlace)
+      continue;
+    distinct.push_back(candidate);
   }
   return within_quota(distinct, kFine, [](const Assessed& pose) { return pose.entry; });
 }
@@ -88,7 +96,13 @@ const QueryView& ViewCache::at(const FeatureOptions& options) {
   for (const Made& made : made_) {
     if (made.options == options) return made.view;
   }
-  made_.push_back({options, view_query(query_, options, seed_, context_, timings_)});
+  made_.push_back({options, {}});
+  try {
+    made_.back().view = view_query(query_, options, seed_, context_, timings_);
+  } catch (const Error& error) {
+    // Too small, too flat or too wide a cloud at this resolution; another entry's may suit it.
+    if (error.code() != ErrorCode::kInvalidArgument) throw;
+  }
   return made_.back().view;
 }
 
@@ -112,7 +126,7 @@ std::unique_ptr<DescriptorIndex> make_index(std::span<const float> values,
 std::optional<Gravity> gravity_of(const QueryOptions& options, const SceneRecord& record) {
   if (!options.up || !record.up) return std::nullopt;
   Gravity gravity;
-  gravity.up_source = options.up->normalized().cast<float>();
+  gravity.up_source = options.up->stableNormalized().cast<float>();
   gravity.up_target = record.up->cast<float>();
   return gravity;
 }

@@ -18,7 +18,8 @@
 
 namespace landmarkdb {
 
-// The query at every resolution that was asked for, made on first use.
+// The query at every resolution that was asked for, made on first use; empty at one it cannot be
+// described at.
 class ViewCache {
  public:
   ViewCache(const CleanQuery& query,
@@ -41,6 +42,10 @@ class ViewCache {
   StageTimings& timings_;
   std::list<Made> made_;  // a list: references stay valid
 };
+
+// A query thinner than this has too few points in a descriptor's support to look like the entry's
+// surface.
+inline constexpr double kMostSpacingVoxels = 2.5;
 
 // What the searches share. `wanted[i]`: entry i may answer.
 struct SearchInput {

@@ -56,6 +56,10 @@ void search_objects(const SearchInput& input, SearchResult& result) {
   for (std::size_t e = 0; e < input.entries.size(); ++e) {
     const Entry& entry = input.entries[e];
     if (!entry.is_object() || !input.wanted[e]) continue;
+    if (input.query.spacing_m > kMostSpacingVoxels * entry.record().options.voxel_m) {
+      result.lost_at = "density";
+      continue;
+    }
     const QueryView& view = input.views.at(entry.record().options);
     if (view.descriptors.size() == 0) continue;
     auto& grid = grids[&view];

@@ -125,6 +125,20 @@ std::optional<Candidate> candidate_of(const SearchInput& input,
   return candidate;
 }
 
+// Takes out the pairs that the candidate explains.
+void drop_agreeing(const SearchInput& input,
+                   const EntryMatches& matches,
+                   const Candidate& candidate,
+                   std::vector<Correspondence>& pairs) {
+  const Entry& entry = input.entries[matches.entry];
+  std::erase_if(pairs, [&](const Correspondence& pair) {
+    const Eigen::Vector3d there =
+        candidate.T_entry_sensor * matches.view->descriptors.keypoints[pair.query].cast<double>();
+    return (there - entry.record().descriptors.keypoints[pair.target].cast<double>()).norm() <=
+           kResidualCells * entry.grid.cell_m();
+  });
+}
+
 }  // namespace
 
 void search_paper(const SearchInput& input, SearchResult& result) {
@@ -137,10 +151,17 @@ void search_paper(const SearchInput& input, SearchResult& result) {
     if (view.descriptors.size() == 0) continue;
     result.matches.push_back(
         {.entry = e, .view = &view, .putative = {}, .dropped_by = {}, .counts = {}});
-    const std::vector<Correspondence> pairs = match_and_filter(input, result.matches.back());
-    const auto candidate =
-        candidate_of(input, result.matches.size() - 1, result.matches.back(), pairs);
-    if (candidate) candidates.push_back(*candidate);
+    std::vector<Correspondence> pairs = match_and_filter(input, result.matches.back());
+    // A second and a third motion of the pairs that are left are the rivals the first is held
+    // against.
+    constexpr int kMotions = 3;
+    for (int motion = 0; motion < kMotions; ++motion) {
+      const auto candidate =
+          candidate_of(input, result.matches.size() - 1, result.matches.back(), pairs);
+      if (!candidate) break;
+      candidates.push_back(*candidate);
+      drop_agreeing(input, result.matches.back(), *candidate, pairs);
+    }
   }
   if (candidates.empty()) {
     result.lost_at = result.matches.empty() ? "keypoints" : "filter";

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "engine/base/error.hpp"
@@ -23,9 +24,6 @@ std::size_t neighbours_for(std::size_t places) {
   return std::min(kMostNeighbours, kNeighbours + kNeighboursAPlace * (places - 1));
 }
 
-// A query thinner than this has too few points in a descriptor's support to look like the entry's
-// surface.
-constexpr double kMostSpacingVoxels = 2.5;
 // A query of fewer voxels than this is too small a thing to be told apart at the entry's
 // resolution.
 constexpr std::size_t kFewestVoxels = 150;
@@ -58,17 +56,19 @@ void match_level(const SearchInput& input,
          found[i].distance});
   }
   for (EntryMatches& matches : by_entry) {
-    if (!input.wanted[matches.entry] || matches.putative.empty()) continue;
+    if (matches.putative.empty()) continue;
     matches.counts.putative = static_cast<std::uint32_t>(matches.putative.size());
     result.matches.push_back(std::move(matches));
   }
 }
 
-std::optional<PositionPrior> prior_of(const QueryOptions& options, const SceneRecord& record) {
+std::optional<PositionPrior> prior_of(const SearchInput& input, const SceneRecord& record) {
+  const QueryOptions& options = input.options;
   if (!options.prior_T_scene_sensor) return std::nullopt;
   PositionPrior prior;
   prior.centre =
       (options.prior_T_scene_sensor->translation() - record.prepared.origin).cast<float>();
+  prior.sensor_source = -input.query.cloud.origin.cast<float>();
   prior.radius_m = static_cast<float>(options.prior_radius_m);
   return prior;
 }
@@ -85,7 +85,7 @@ void propose_and_rank(const SearchInput& input,
                           entry.record().descriptors,
                           matches.view->descriptors,
                           gravity_of(input.options, entry.record()),
-                          prior_of(input.options, entry.record()));
+                          prior_of(input, entry.record()));
   for (const RankedPose& ranked : rank_poses(
            entry.grid, matches.view->test, proposals, input.query.centre, {}, input.context)) {
     candidates.push_back({m, ranked.T_target_source, ranked.score, ranked.correspondence});
@@ -97,10 +97,12 @@ void propose_and_rank(const SearchInput& input,
 void search_places(const SearchInput& input, SearchResult& result) {
   std::vector<Candidate> candidates;
   for (const Level& level : input.levels) {
-    const bool asked = std::any_of(level.entries.begin(),
-                                   level.entries.end(),
-                                   [&](std::size_t entry) { return input.wanted[entry]; });
-    if (!asked) continue;
+    std::vector<std::size_t> asked;
+    std::copy_if(level.entries.begin(),
+                 level.entries.end(),
+                 std::back_inserter(asked),
+                 [&](std::size_t entry) { return input.wanted[entry]; });
+    if (asked.empty()) continue;
     if (input.query.spacing_m > kMostSpacingVoxels * level.options.voxel_m) {
       result.lost_at = "density";
       continue;
@@ -108,7 +110,11 @@ void search_places(const SearchInput& input, SearchResult& result) {
     const QueryView& view = input.views.at(query_features(level.options, input.options));
     if (view.prepared.size() < kFewestVoxels || view.descriptors.size() == 0) continue;
     const std::size_t first = result.matches.size();
-    match_level(input, level, view, result);
+    if (asked.size() == level.entries.size()) {
+      match_level(input, level, view, result);
+    } else {
+      match_level(input, make_level(input.entries, asked), view, result);
+    }
     for (std::size_t m = first; m < result.matches.size(); ++m) {
       propose_and_rank(input, m, result, candidates);
     }

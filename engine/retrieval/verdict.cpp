@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "engine/retrieval/confidence.hpp"
-#include "engine/retrieval/rank_poses.hpp"
 
 namespace landmarkdb {
 
@@ -21,18 +20,41 @@ std::vector<Assessed> distinct(std::vector<Assessed> assessed,
   });
   std::vector<Assessed> kept;
   for (Assessed& candidate : assessed) {
-    const double cell_m = entries[candidate.entry].grid.cell_m();
+    const Entry& entry = entries[candidate.entry];
     const bool known = std::any_of(kept.begin(), kept.end(), [&](const Assessed& other) {
-      return other.entry == candidate.entry &&
-             same_pose(candidate.T_entry_sensor,
-                       other.T_entry_sensor,
+      return same_spot(candidate,
+                       other,
+                       entry,
                        centre,
-                       options.different_translation_cells * cell_m,
+                       place_radius_m(entry, options),
                        options.different_rotation_rad);
     });
     if (!known) kept.push_back(std::move(candidate));
   }
   return kept;
+}
+
+// Only one of two rivals can be right: two places, or two objects at one spot. An object stands in
+// a place, and several objects may stand in view.
+bool rivals(const Assessed& a, const Assessed& b, std::span<const Entry> entries) {
+  const Entry& entry_a = entries[a.entry];
+  const Entry& entry_b = entries[b.entry];
+  if (entry_a.is_object() != entry_b.is_object()) return false;
+  if (!entry_a.is_object()) return true;
+  const Eigen::Vector3d spot_a = a.T_entry_sensor.inverse() * entry_a.centre;
+  const Eigen::Vector3d spot_b = b.T_entry_sensor.inverse() * entry_b.centre;
+  return (spot_a - spot_b).norm() < 0.5 * std::max(entry_a.extent_m, entry_b.extent_m);
+}
+
+// The best score among the rivals of poses[i]. Where none was found the search may have missed it:
+// one that does well, but not as well, is taken for granted.
+double best_rival(std::size_t i, std::span<const Assessed> poses, std::span<const Entry> entries) {
+  constexpr double kUnseenRival = 0.6;  // of the pose's own score
+  double best = kUnseenRival * poses[i].score;
+  for (std::size_t j = 0; j < poses.size(); ++j) {
+    if (j != i && rivals(poses[i], poses[j], entries)) best = std::max(best, poses[j].score);
+  }
+  return best;
 }
 
 std::string why_not(const Judged& best) {
@@ -50,6 +72,14 @@ std::string why_not(const Judged& best) {
 
 }  // namespace
 
+double place_radius_m(const Entry& entry, const VerdictOptions& options) {
+  const double cell_m = entry.grid.cell_m();
+  constexpr double kLeastCells = 2.0;
+  return std::max(
+      kLeastCells * cell_m,
+      std::min(options.different_translation_cells * cell_m, options.different_translation_most_m));
+}
+
 Verdict judge(std::vector<Assessed> assessed,
               std::span<const Entry> entries,
               const Eigen::Vector3d& centre,
@@ -60,14 +90,14 @@ Verdict judge(std::vector<Assessed> assessed,
     verdict.reason = "pose: no proposal lies on the surface of any entry";
     return verdict;
   }
-  const double rival_score = poses.size() > 1 ? poses[1].score : 0.0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const double best_other = i == 0 ? rival_score : poses[0].score;
     Judged judged{.pose = poses[i], .confidence = 0.0, .margin = 0.0};
-    if (poses[i].score > 0.0) judged.margin = std::max(0.0, 1.0 - best_other / poses[i].score);
+    const double rival = best_rival(i, poses, entries);
+    if (poses[i].score > 0.0) judged.margin = std::max(0.0, 1.0 - rival / poses[i].score);
     judged.confidence = confidence_of(poses[i].evidence, poses[i].score, judged.margin);
     verdict.judged.push_back(std::move(judged));
   }
+  const double rival_score = best_rival(0, poses, entries);
   const bool rivalled = rival_score >= options.rival_share * poses[0].score;
   // What the best pose would be believed at, were it alone: rivals make it ambiguous, not wrong.
   const double alone = confidence_of(poses[0].evidence, poses[0].score, 1.0);

@@ -27,11 +27,15 @@ struct VerdictOptions {
   double min_confidence = 0.5;
   // A rival whose score reaches this share of the best one's explains the query about as well.
   double rival_share = 0.88;
-  // Two poses are different places when they are further apart than both (in cells: 0.5 m in a room
-  // described at 5 cm), or in different entries.
+  // Two poses are different places when they are further apart than these (in cells: 0.5 m in a
+  // room described at 5 cm, and no more than that in coarser ones), or in different entries.
   double different_translation_cells = 10.0;
+  double different_translation_most_m = 0.5;
   double different_rotation_rad = 0.175;
 };
+
+// How far apart two poses in the entry are different places.
+double place_radius_m(const Entry& entry, const VerdictOptions& options);
 
 // Judges the assessed poses of all entries against one another. `entries` says what each pose's
 // `entry` is; `centre` (sensor frame) is where two poses are compared.
