@@ -39,7 +39,8 @@ def main():
     off_m = math.dist(position(found), position(truth))
     off_deg = angle_deg(rotation(found), rotation(truth))
     right = off_m <= RIGHT_M and off_deg <= RIGHT_DEG
-    print(f"against the known truth: {1000 * off_m:.1f} mm and {off_deg:.2f} deg off, {'right' if right else 'WRONG'}")
+    verdict = "right" if right else "wrong" if answer["status"] == "localized" else f"not right, and answered {answer['status']}"
+    print(f"against the known truth: the best pose is {1000 * off_m:.1f} mm and {off_deg:.2f} deg off, {verdict}")
     return 0 if right and answer["status"] == "localized" else 1
 
 
