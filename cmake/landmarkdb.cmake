@@ -10,7 +10,8 @@ target_compile_options(landmarkdb_flags INTERFACE
 target_include_directories(landmarkdb_flags INTERFACE ${PROJECT_SOURCE_DIR})
 # Under AddressSanitizer Eigen would allocate in its own way and PCL's libraries, built without, free what we
 # allocated (a range image's points). This is what Eigen chooses by itself on 64-bit glibc otherwise.
-if("${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_RELEASE}" MATCHES "sanitize=[a-z,]*address")
+string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+if("${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}" MATCHES "sanitize=[a-z,]*address")
   target_compile_definitions(landmarkdb_flags INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 target_link_libraries(landmarkdb_flags INTERFACE Threads::Threads)
