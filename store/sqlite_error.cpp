@@ -54,7 +54,8 @@ void throw_error(sqlite3* handle, int code, const std::string& path) {
       throw Error(ErrorCode::kDataLoss,
                   quoted + " is damaged (" + detail + "); `check` says what is affected");
     case SQLITE_NOTADB:
-      throw Error(ErrorCode::kInvalidArgument, quoted + " is not a landmarkdb database");
+      throw Error(ErrorCode::kInvalidArgument,
+                  quoted + " is not a landmarkdb database: it is no SQLite file");
     case SQLITE_READONLY:
     case SQLITE_PERM:
     case SQLITE_AUTH:

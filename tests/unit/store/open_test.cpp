@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -178,6 +179,40 @@ TEST(OpenDatabase, CanBeReadFromAFolderThatMayNotBeWritten) {
     if (thrown.code != ErrorCode::kPermissionDenied) throw std::runtime_error(thrown.message);
   }));
   fs::permissions(folder.path(), fs::perms(0755));
+}
+
+// Asks the system, in a process of its own: SQLite's tables in this one would not know.
+bool is_locked(const std::string& path) {
+  const pid_t child = fork();
+  if (child == 0) {
+    struct flock lock {};
+    lock.l_type = F_WRLCK;
+    lock.l_whence = SEEK_SET;  // from 0 to the end
+    const int descriptor = open(path.c_str(), O_RDWR | O_CLOEXEC);
+    if (descriptor < 0 || fcntl(descriptor, F_GETLK, &lock) != 0) _exit(2);
+    _exit(lock.l_type == F_UNLCK ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 1;
+}
+
+// A lock of this process goes with any descriptor of the file that the process closes.
+TEST(OpenDatabase, OpeningAgainLeavesTheLocksOfAnOpenConnection) {
+  const TempFolder folder;
+  const std::string path = folder.file("x.db");
+  Store::create_or_open(path);
+  const Database holder(path, OpenMode::kReadWrite, 0ms);
+  holder.execute("PRAGMA journal_mode = DELETE");  // its locks are on the file itself
+  EXPECT_FALSE(is_locked(path));
+  const sqlite::Transaction transaction(holder, sqlite::Transaction::Kind::kWrite);
+  ASSERT_TRUE(is_locked(path));
+  Store::open_read_only(path, {.busy_timeout = 0ms});
+  EXPECT_TRUE(is_locked(path));
+  EXPECT_THROW(Store::open_read_write(path, {.busy_timeout = 0ms}), Error);
+  EXPECT_THROW(Store::create_or_open(path, {.busy_timeout = 0ms}), Error);
+  Store::migrate(path, true, {});
+  EXPECT_TRUE(is_locked(path));
 }
 
 TEST(OpenDatabase, OfTwoThatMakeItAtOnceBothGetIt) {
