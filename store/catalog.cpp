@@ -15,8 +15,9 @@ using sqlite::Transaction;
 std::shared_ptr<const SceneRecord> find_record(const Catalog* catalog, const VersionRow& row) {
   if (catalog == nullptr) return nullptr;
   for (const CatalogEntry& entry : catalog->entries) {
+    // The digest tells the same version from one of another file that took this one's place.
     if (entry.scene_id == row.scene_id && entry.version == row.version && entry.record &&
-        entry.record->name == row.scene) {
+        entry.record->name == row.scene && !row.sha256.empty() && entry.sha256 == row.sha256) {
       return entry.record;
     }
   }
@@ -48,6 +49,7 @@ std::optional<CatalogEntry> load_entry(const Database& database,
     CatalogEntry entry;
     entry.scene_id = scene_id;
     entry.version = active->version;
+    entry.sha256 = active->sha256;
     entry.tags = read_tags(database, scene_id);
     entry.landmarks = read_landmarks(database, scene_id);
     entry.record = find_record(previous, *active);

@@ -96,8 +96,10 @@ std::string require_scene_name(const Database& database, std::int64_t scene_id) 
 std::vector<VersionRow> read_versions(const Database& database,
                                       std::optional<std::int64_t> scene_id) {
   Statement rows(database,
-                 "SELECT scene_id, name, version, segment_id, state, damage FROM scene_version "
-                 "JOIN scene ON scene.id = scene_id WHERE ?1 IS NULL OR scene_id = ?1 "
+                 "SELECT scene_id, name, version, segment_id, state, damage, segment.sha256 "
+                 "FROM scene_version JOIN scene ON scene.id = scene_id "
+                 "LEFT JOIN segment ON segment.id = segment_id "
+                 "WHERE ?1 IS NULL OR scene_id = ?1 "
                  "ORDER BY scene_id, version");
   if (scene_id) {
     rows.bind(*scene_id);
@@ -106,9 +108,10 @@ std::vector<VersionRow> read_versions(const Database& database,
   }
   std::vector<VersionRow> versions;
   while (rows.step()) {
-    VersionRow row{rows.integer(0), rows.text(1), rows.integer(2), rows.integer(3), false, {}};
+    VersionRow row{rows.integer(0), rows.text(1), rows.integer(2), rows.integer(3)};
     row.active = rows.text(4) == "active";
     if (!rows.is_null(5)) row.damage = rows.text(5);
+    row.sha256 = rows.text(6);
     versions.push_back(std::move(row));
   }
   return versions;

@@ -21,7 +21,8 @@ struct VersionRow {
   std::int64_t version = 0;
   std::int64_t segment_id = 0;
   bool active = false;
-  std::optional<std::string> damage;
+  std::optional<std::string> damage{};
+  std::string sha256{};  // of the segment; empty where that is lost
 
   std::string what() const;  // "scene 'lobby' version 2", for messages
 };

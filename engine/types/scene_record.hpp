@@ -47,6 +47,7 @@ struct CatalogEntry {
   std::map<std::string, std::string> tags;
   std::vector<Landmark> landmarks;
   std::shared_ptr<const SceneRecord> record;
+  std::string sha256{};  // of what the store holds of `record`; empty where it is not from a store
 };
 
 // All active entries at one moment. Never changes once built; shared between queries.

@@ -62,5 +62,17 @@ TEST(LoadCatalog, CanBeStopped) {
   EXPECT_EQ(error_of([&] { store.load_catalog(context); }).code, ErrorCode::kCancelled);
 }
 
+TEST(LoadCatalog, DoesNotTakeAnotherFilesSceneForTheOneItHolds) {
+  Store first = Store::create_or_open(":memory:");
+  first.insert(make_record("lobby", 1), {});
+  Store second = Store::create_or_open(":memory:");
+  second.insert(make_record("lobby", 3), {});
+  const auto before = first.load_catalog({});
+  EXPECT_EQ(before->entries[0].sha256, first.show("lobby").versions[0].sha256);
+  const auto after = second.load_catalog({}, {}, before.get());
+  EXPECT_NE(after->entries[0].record, before->entries[0].record);
+  EXPECT_NE(after->entries[0].record->prepared.points, before->entries[0].record->prepared.points);
+}
+
 }  // namespace
 }  // namespace landmarkdb
