@@ -71,6 +71,20 @@ class ArrayTaker {
   const std::string& what_;
 };
 
+// Metres from the origin of the record: more than the Earth is wide is no scan.
+constexpr float kMaxLocal_m = 1e7F;
+// Metres from the origin of the map: eastings that begin with their zone's number reach 6e7.
+constexpr double kMaxOrigin_m = 1e9;
+
+// False for what is not finite too.
+template <typename Vectors>
+bool all_within(const Vectors& vectors, float limit) {
+  for (const auto& v : vectors) {
+    if (!(v.cwiseAbs().array() < limit).all()) return false;
+  }
+  return true;
+}
+
 template <typename Vectors>
 bool all_finite(const Vectors& vectors) {
   for (const auto& v : vectors) {
@@ -87,6 +101,13 @@ bool all_options_finite(const FeatureOptions& options) {
     if (!std::isfinite(value) || value < 0.0) return false;
   }
   return true;
+}
+
+// The lengths that others divide by. Without descriptors there is nothing that has a radius.
+bool lengths_are_positive(const SceneRecord& record) {
+  if (!(record.options.voxel_m > 0.0) || !(record.prepared.resolution_m > 0.0)) return false;
+  return record.descriptors.size() == 0 ||
+         (record.options.normal_radius_m > 0.0 && record.options.shot_radius_m > 0.0);
 }
 
 // The first thing wrong with the record; empty where all is well.
@@ -122,9 +143,16 @@ std::string fault_of(const SceneRecord& record) {
   for (const float value : set.values) {
     if (!std::isfinite(value)) return "has descriptor values that are not finite";
   }
-  if (!cloud.origin.allFinite() || !std::isfinite(cloud.resolution_m) || cloud.resolution_m < 0.0 ||
-      !all_options_finite(record.options)) {
-    return "has an origin, resolution or option that is no finite number";
+  if (!all_within(cloud.points, kMaxLocal_m) || !all_within(set.keypoints, kMaxLocal_m) ||
+      !all_within(cloud.viewpoints, static_cast<float>(kMaxOrigin_m))) {
+    return "has points, keypoints or viewpoints that are too far away, want points within 1e7 m";
+  }
+  if (!(cloud.origin.cwiseAbs().array() < kMaxOrigin_m).all() ||
+      !std::isfinite(cloud.resolution_m) || !all_options_finite(record.options)) {
+    return "has an origin, resolution or option that is no finite number, or an origin past 1e9 m";
+  }
+  if (!lengths_are_positive(record)) {
+    return "has a resolution, voxel or radius of zero, want more";
   }
   if (record.up && (!record.up->allFinite() || record.up->norm() == 0.0)) {
     return "has an up direction without a direction";

@@ -29,6 +29,13 @@ TEST(Segment, ARecordWithoutOptionalPartsComesBack) {
   expect_same_record(decode_segment(encode_segment(record), "lobby", kWhat), record);
 }
 
+TEST(Segment, WithoutDescriptorsNoRadiusIsNeeded) {
+  SceneRecord record = make_record("lobby", 2, {.points = 5, .keypoints = 0});
+  record.options.normal_radius_m = 0.0;
+  record.options.shot_radius_m = 0.0;
+  EXPECT_NO_THROW(encode_segment(record));
+}
+
 TEST(Segment, TheSameRecordGivesTheSameBytes) {
   const Segment first = encode_segment(make_record("lobby", 7));
   const Segment second = encode_segment(make_record("another name", 7));
@@ -65,6 +72,16 @@ TEST(Segment, RecordsThatDoNotFitTogetherAreRefused) {
   EXPECT_TRUE(refused([&](SceneRecord& r) { r.descriptors.frames[1](0, 0) = nan; }));
   EXPECT_TRUE(refused([](SceneRecord& r) { r.prepared.origin.y() = HUGE_VAL; }));
   EXPECT_TRUE(refused([](SceneRecord& r) { r.options.voxel_m = -1.0; }));
+  EXPECT_TRUE(refused([](SceneRecord& r) { r.options.voxel_m = 0.0; }));
+  EXPECT_TRUE(refused([](SceneRecord& r) { r.options.normal_radius_m = 0.0; }));
+  EXPECT_TRUE(refused([](SceneRecord& r) { r.options.shot_radius_m = 0.0; }));
+  EXPECT_TRUE(refused([](SceneRecord& r) { r.prepared.resolution_m = 0.0; }));
+  EXPECT_TRUE(refused([&](SceneRecord& r) { r.prepared.resolution_m = nan; }));
+  EXPECT_TRUE(refused([](SceneRecord& r) { r.prepared.points[1].z() = 3e38F; }));
+  EXPECT_TRUE(refused([](SceneRecord& r) { r.prepared.points[1].z() = -1e7F; }));
+  EXPECT_TRUE(refused([](SceneRecord& r) { r.prepared.viewpoints[0].x() = 3e38F; }));
+  EXPECT_TRUE(refused([](SceneRecord& r) { r.descriptors.keypoints[0].y() = 1e30F; }));
+  EXPECT_TRUE(refused([](SceneRecord& r) { r.prepared.origin.x() = 1e300; }));
   EXPECT_TRUE(refused([](SceneRecord& r) { r.up = Eigen::Vector3d::Zero(); }));
   EXPECT_TRUE(refused([](SceneRecord& r) { r.descriptors.values[0] = 1e6F; }));
 }
