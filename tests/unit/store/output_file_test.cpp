@@ -1,5 +1,8 @@
 #include "store/output_file.hpp"
 
+#include <unistd.h>
+
+#include "store/store.hpp"
 #include "tests/unit/store/store_support.hpp"
 
 namespace landmarkdb {
@@ -53,6 +56,41 @@ TEST(WriteNewFile, NeverReplacesWhatIsThereOrComesMeanwhile) {
   std::filesystem::create_symlink("nowhere", folder.file("link"));
   EXPECT_EQ(error_of([&] { write_new_file(folder.file("link"), [](const std::string&) {}); }).code,
             ErrorCode::kAlreadyExists);
+}
+
+TEST(WriteNewFile, DoesNotWriteThroughALinkLaidInItsWay) {
+  const TempFolder folder;
+  write_file(folder.file("theirs"), "theirs");
+  std::filesystem::create_symlink("theirs",
+                                  folder.file("out.partial-" + std::to_string(getpid()) + "-0"));
+  write_new_file(folder.file("out"),
+                 [](const std::string& temporary) { write_file(temporary, "mine"); });
+  EXPECT_EQ(read_file(folder.file("out")), "mine");
+  EXPECT_EQ(read_file(folder.file("theirs")), "theirs");
+}
+
+TEST(TakeName, NeverReplacesAnything) {
+  const TempFolder folder;
+  write_file(folder.file("a"), "a");
+  write_file(folder.file("b"), "b");
+  EXPECT_FALSE(take_name(folder.file("a"), folder.file("b")));
+  EXPECT_EQ(read_file(folder.file("b")), "b");
+  EXPECT_TRUE(take_name(folder.file("a"), folder.file("c")));
+  EXPECT_EQ(read_file(folder.file("c")), "a");
+  EXPECT_EQ(error_of([&] { take_name(folder.file("none"), folder.file("d")); }).code,
+            ErrorCode::kInvalidArgument);
+}
+
+TEST(BackupDatabase, KeepsThePermissionsOfTheSource) {
+  namespace fs = std::filesystem;
+  const TempFolder folder;
+  const Store store = Store::create_or_open(folder.file("x.db"));
+  for (const auto mode : {fs::perms(0600), fs::perms(0664)}) {
+    fs::permissions(folder.file("x.db"), mode);
+    const std::string copy = folder.file("copy" + std::to_string(static_cast<int>(mode)));
+    store.backup(copy, {});
+    EXPECT_EQ(fs::status(copy).permissions(), mode);
+  }
 }
 
 }  // namespace
