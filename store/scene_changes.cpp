@@ -66,6 +66,19 @@ void write_tag(const Database& database,
   insert.run();
 }
 
+void delete_tag(const Database& database,
+                std::int64_t scene_id,
+                std::string_view name,
+                std::string_view key) {
+  Statement remove(database, "DELETE FROM tag WHERE scene_id = ? AND key = ?");
+  remove.bind(scene_id).bind(key);
+  remove.run();
+  if (database.changed_rows() > 0) return;
+  throw Error(ErrorCode::kNotFound,
+              "scene '" + std::string(name) + "' has no tag '" + std::string(key) + "'",
+              "tag");
+}
+
 void write_landmark(const Database& database, std::int64_t scene_id, const Landmark& landmark) {
   Statement insert(database,
                    "INSERT OR REPLACE INTO landmark (scene_id, name, min_x_m, min_y_m, min_z_m, "
@@ -213,23 +226,27 @@ void set_tag(const Database& database,
              std::string_view name,
              std::string_view key,
              std::string_view value) {
-  validate_name(key, "tag key");
-  validate_tag_value(value);
-  Transaction transaction(database, kWrite);
-  write_tag(database, require_scene_id(database, name), key, value);
-  raise_generation(database);
-  transaction.commit();
+  change_tags(database, name, {{std::string(key), std::string(value)}});
 }
 
 void remove_tag(const Database& database, std::string_view name, std::string_view key) {
+  change_tags(database, name, {{std::string(key), std::nullopt}});
+}
+
+void change_tags(const Database& database, std::string_view name, const TagChanges& changes) {
+  for (const auto& [key, value] : changes) {
+    if (!value) continue;  // a tag that is there may be taken away whatever its key
+    validate_name(key, "tag key");
+    validate_tag_value(*value);
+  }
   Transaction transaction(database, kWrite);
-  Statement remove(database, "DELETE FROM tag WHERE scene_id = ? AND key = ?");
-  remove.bind(require_scene_id(database, name)).bind(key);
-  remove.run();
-  if (database.changed_rows() == 0) {
-    throw Error(ErrorCode::kNotFound,
-                "scene '" + std::string(name) + "' has no tag '" + std::string(key) + "'",
-                "tag");
+  const std::int64_t scene_id = require_scene_id(database, name);
+  for (const auto& [key, value] : changes) {
+    if (value) {
+      write_tag(database, scene_id, key, *value);
+    } else {
+      delete_tag(database, scene_id, name, key);
+    }
   }
   raise_generation(database);
   transaction.commit();

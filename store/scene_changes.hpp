@@ -41,6 +41,10 @@ void set_tag(const sqlite::Database& database,
              std::string_view key,
              std::string_view value);
 void remove_tag(const sqlite::Database& database, std::string_view name, std::string_view key);
+// Sets the tags that have a value and takes away those that have none; all or nothing.
+void change_tags(const sqlite::Database& database,
+                 std::string_view name,
+                 const TagChanges& changes);
 void set_landmark(const sqlite::Database& database,
                   std::string_view name,
                   const Landmark& landmark);

@@ -21,6 +21,22 @@ namespace landmarkdb {
 
 using sqlite::Transaction;
 
+namespace {
+
+// Reading the open database, or a companion of it, as a plain file would drop SQLite's locks on it
+// (see has_database() in store/open.cpp).
+void refuse_itself(const sqlite::Database& database, const std::string& path) {
+  for (const char* suffix : {"", "-wal", "-shm"}) {
+    std::error_code missing;
+    if (std::filesystem::equivalent(path, database.path() + suffix, missing)) {
+      throw Error(ErrorCode::kInvalidArgument,
+                  "'" + path + "' cannot be imported: it is the database itself");
+    }
+  }
+}
+
+}  // namespace
+
 int schema_version() { return latest_version(all_migrations()); }
 
 struct Store::State {
@@ -138,6 +154,10 @@ void Store::untag(std::string_view name, std::string_view key) {
   remove_tag(state_->writer(), name, key);
 }
 
+void Store::change_tags(std::string_view name, const TagChanges& changes) {
+  landmarkdb::change_tags(state_->writer(), name, changes);
+}
+
 void Store::add_landmark(std::string_view scene, const Landmark& landmark) {
   set_landmark(state_->writer(), scene, landmark);
 }
@@ -178,6 +198,16 @@ OptimizeReport Store::optimize(const RunContext& context) {
   return report;
 }
 
+void Store::checkpoint() {
+  const sqlite::Database& database = state_->writer();
+  // One row: whether it was kept from finishing, and two counts of pages.
+  if (database.integer("PRAGMA wal_checkpoint(TRUNCATE)") != 0) {
+    throw Error(ErrorCode::kUnavailable,
+                "the log of '" + database.path() +
+                    "' cannot be brought into it: another connection reads or writes");
+  }
+}
+
 void Store::backup(const std::string& path, const RunContext& context) const {
   backup_database(state_->reader(), path, context);
 }
@@ -203,6 +233,7 @@ InsertResult Store::import_scene(const std::string& path,
                                  const RunContext& context,
                                  const std::optional<std::string>& as_name) {
   const sqlite::Database& database = state_->writer();
+  refuse_itself(database, path);
   const SceneFile file = read_scene_file(path, context);
   return insert_version(
       database, as_name ? *as_name : file.name, file.segment, file.extras, context);

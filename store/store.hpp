@@ -88,6 +88,8 @@ class Store {
 
   void tag(std::string_view name, std::string_view key, std::string_view value);
   void untag(std::string_view name, std::string_view key);  // Error{kNotFound} without such a tag
+  // Several of both at once.
+  void change_tags(std::string_view name, const TagChanges& changes);
 
   // Adds or replaces a landmark of that name; the box must have min < max on each axis.
   void add_landmark(std::string_view scene, const Landmark& landmark);
@@ -103,6 +105,10 @@ class Store {
   // Lets go of versions other than the active one and the one `rollback` would go to, and gives the
   // space back. Needs free disk space as large as the database for the time it runs.
   OptimizeReport optimize(const RunContext& context);
+
+  // Brings what was written so far into the database file itself and empties the log beside it;
+  // Error{kUnavailable} while another connection reads or writes.
+  void checkpoint();
 
   // A consistent copy, also while others write. Error{kAlreadyExists} when there is a file at
   // `path`; what is written appears there only when it is whole. Reports the stage "backup".

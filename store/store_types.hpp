@@ -56,6 +56,9 @@ struct SceneSummary {
   std::optional<std::string> damage;  // of the active version: it is not served
 };
 
+// By key; nothing stands for taking the tag away.
+using TagChanges = std::map<std::string, std::optional<std::string>>;
+
 struct InsertResult {
   std::int64_t scene_id = 0;
   std::int64_t version = 0;      // 1 for a new name

@@ -251,5 +251,39 @@ TEST(Store, SizeTellsTheFileAndItsLog) {
   EXPECT_GT(store.size().free_bytes, 400'000U);
 }
 
+TEST(Store, SeveralTagsChangeTogetherOrNotAtAll) {
+  Store store = Store::create_or_open(":memory:");
+  store.insert(make_record("lobby"), {});
+  store.tag("lobby", "old", "1");
+  const auto generation = store.generation();
+  EXPECT_THROW(store.change_tags("lobby", {{"a", "1"}, {"none", std::nullopt}}), Error);
+  EXPECT_THROW(store.change_tags("lobby", {{"a", "1"}, {"b/c", "2"}}), Error);
+  EXPECT_THROW(store.change_tags("attic", {{"a", "1"}}), Error);
+  EXPECT_EQ(store.show("lobby").tags, (std::map<std::string, std::string>{{"old", "1"}}));
+  EXPECT_EQ(store.generation(), generation);
+  store.change_tags("lobby", {{"a", "1"}, {"b", "2"}, {"old", std::nullopt}});
+  EXPECT_EQ(store.show("lobby").tags, (std::map<std::string, std::string>{{"a", "1"}, {"b", "2"}}));
+  EXPECT_EQ(store.generation(), generation + 1);
+}
+
+TEST(Store, ACheckpointLeavesNothingInTheLog) {
+  const TempFolder folder;
+  Store store = Store::create_or_open(folder.file("x.db"));
+  store.insert(make_record("lobby"), {});
+  EXPECT_GT(store.size().wal_bytes, 0U);
+  store.checkpoint();
+  EXPECT_EQ(store.size().wal_bytes, 0U);
+}
+
+TEST(Store, TheDatabaseItselfIsNotImported) {
+  const TempFolder folder;
+  Store store = Store::create_or_open(folder.file("x.db"));
+  for (const char* suffix : {"", "-wal", "-shm"}) {
+    const auto thrown = error_of([&] { store.import_scene(folder.file("x.db") + suffix, {}); });
+    EXPECT_EQ(thrown.code, ErrorCode::kInvalidArgument);
+    EXPECT_THAT(thrown.message, HasSubstr("the database itself"));
+  }
+}
+
 }  // namespace
 }  // namespace landmarkdb
