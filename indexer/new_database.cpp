@@ -1,9 +1,7 @@
 #include "indexer/new_database.hpp"
 
 #include <array>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <cstdint>
 #include <filesystem>
 #include <system_error>
 
@@ -11,6 +9,7 @@
 #include <unistd.h>
 
 #include "engine/base/error.hpp"
+#include "store/output_file.hpp"
 
 namespace landmarkdb::indexer {
 namespace {
@@ -22,9 +21,11 @@ fs::path folder_of(const std::string& path) {
   return folder.empty() ? fs::path(".") : folder;
 }
 
-bool exists(const std::string& path) {
+// True where there is nothing yet, or an empty file: SQLite makes a database of either.
+bool is_vacant(const std::string& path) {
   std::error_code error;
-  return fs::exists(path, error);
+  if (!fs::exists(path, error)) return !error;
+  return fs::is_regular_file(path, error) && fs::file_size(path, error) == 0 && !error;
 }
 
 void remove_database(const std::string& path) {
@@ -39,17 +40,6 @@ struct Scaffold {
   ~Scaffold() { remove_database(path); }
 };
 
-// Gives the file `from` the name `to`; false when that name is taken by now.
-bool take_name(const std::string& from, const std::string& to) {
-  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
-  if (errno == EEXIST) return false;
-  // A file system that does not know the flag: a hard link does not replace either.
-  if (::link(from.c_str(), to.c_str()) == 0) return true;
-  if (errno == EEXIST) return false;
-  throw Error(ErrorCode::kResourceExhausted,
-              to + ": the new database cannot be put in place: " + std::strerror(errno));
-}
-
 void sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -57,10 +47,28 @@ void sync_folder(const fs::path& folder) {
   ::close(descriptor);
 }
 
+// A new database at `path`, all of it in the one file: its name is all that will be moved.
+InsertResult build(const std::string& path, const std::function<InsertResult(Store&)>& change) {
+  InsertResult result;
+  {
+    Store store = Store::create_or_open(path);
+    result = change(store);
+    store.checkpoint();
+  }
+  std::error_code missing;
+  const std::uintmax_t log_bytes = fs::file_size(path + "-wal", missing);
+  if (!missing && log_bytes > 0) {
+    throw Error(ErrorCode::kUnavailable,
+                path + ": the new database is not whole: its log holds " +
+                    std::to_string(log_bytes) + " bytes");
+  }
+  return result;
+}
+
 }  // namespace
 
 void require_writable_database(const std::string& path) {
-  if (exists(path)) {
+  if (!is_vacant(path)) {
     Store::open_read_write(path);
     return;
   }
@@ -74,24 +82,24 @@ void require_writable_database(const std::string& path) {
     throw Error(ErrorCode::kPermissionDenied,
                 path + ": the folder " + folder.string() + " cannot be written to");
   }
+  if (fs::exists(path, error) && ::access(path.c_str(), W_OK) != 0) {
+    throw Error(ErrorCode::kPermissionDenied, path + " cannot be written to");
+  }
 }
 
 InsertResult change_or_create(const std::string& path,
                               const std::function<InsertResult(Store&)>& change) {
-  if (!exists(path)) {
+  if (is_vacant(path)) {
     const Scaffold scaffold{path + ".new-" + std::to_string(::getpid())};
     remove_database(scaffold.path);
-    InsertResult result;
-    {
-      Store store = Store::create_or_open(scaffold.path);
-      result = change(store);
-    }
+    const InsertResult result = build(scaffold.path, change);
     if (take_name(scaffold.path, path)) {
       sync_folder(folder_of(path));
       return result;
     }
   }
-  Store store = Store::open_read_write(path);
+  // Someone else's database, or an empty file that is not ours to replace.
+  Store store = Store::create_or_open(path);
   return change(store);
 }
 

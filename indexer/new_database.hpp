@@ -12,9 +12,9 @@ namespace landmarkdb::indexer {
 // Changes nothing.
 void require_writable_database(const std::string& path);
 
-// Runs one change on the database at `path`. Where there is none, the change is made in a new file
-// beside it that takes the name only when it is whole: a change that fails leaves no database
-// behind.
+// Runs one change on the database at `path`. Where there is none, or an empty file, the change is
+// made in a new file beside it that takes the name only when it is whole: a change that fails
+// leaves no database behind. `change` runs again on what is at `path` when the name is taken.
 InsertResult change_or_create(const std::string& path,
                               const std::function<InsertResult(Store&)>& change);
 

@@ -65,5 +65,20 @@ TEST_F(NewDatabase, IsRefusedBeforehandWhereItCannotBe) {
   EXPECT_THROW(require_writable_database(path_), Error);
 }
 
+TEST_F(NewDatabase, AnEmptyFileIsTakenAsNone) {
+  std::ofstream{path_};
+  EXPECT_NO_THROW(require_writable_database(path_));
+  EXPECT_EQ(fs::file_size(path_), 0U);
+  EXPECT_THROW(change_or_create(path_,
+                                [](Store&) -> InsertResult {
+                                  throw Error(ErrorCode::kResourceExhausted, "the disk is full");
+                                }),
+               Error);
+  EXPECT_EQ(fs::file_size(path_), 0U);
+  change_or_create(path_, [](Store&) { return InsertResult{}; });
+  EXPECT_EQ(file_count(), 1U);
+  EXPECT_TRUE(Store::open_read_only(path_).list_scenes().empty());
+}
+
 }  // namespace
 }  // namespace landmarkdb::indexer
