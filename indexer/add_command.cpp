@@ -13,6 +13,7 @@
 #include "cli/usage_error.hpp"
 #include "cli/values.hpp"
 #include "indexer/add_scene.hpp"
+#include "indexer/checked_names.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/long_job.hpp"
 #include "indexer/scene_view.hpp"
@@ -55,6 +56,7 @@ void require_one_each(const std::string& option, std::size_t given, std::size_t 
 }
 
 AddRequest request_of(const AddArguments& arguments) {
+  require_name(arguments.name, "scene name", "NAME");
   require_one_each("--pose", arguments.poses.size(), arguments.clouds.size());
   require_one_each("--viewpoint", arguments.viewpoints.size(), arguments.clouds.size());
   AddRequest request;

@@ -7,6 +7,7 @@
 #include "cli/help.hpp"
 #include "cli/table.hpp"
 #include "cli/values.hpp"
+#include "indexer/checked_names.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/scene_view.hpp"
 #include "store/store.hpp"
@@ -23,6 +24,7 @@ struct LandmarkArguments {
 };
 
 int run_add(const LandmarkArguments& arguments, const Program& program) {
+  require_name(arguments.landmark, "landmark name", "LANDMARK");
   const cli::Box box = cli::parse_box(arguments.box, "--box");
   const Landmark landmark{arguments.landmark, box.min_m, box.max_m};
   Store::open_read_write(program.database()).add_landmark(arguments.scene, landmark);

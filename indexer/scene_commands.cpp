@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "cli/help.hpp"
 #include "cli/table.hpp"
 #include "cli/usage_error.hpp"
+#include "indexer/checked_names.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/scene_view.hpp"
 #include "store/store.hpp"
@@ -19,6 +21,7 @@ namespace {
 using nlohmann::ordered_json;
 
 const std::string kProgram = "landmarkdb-indexer --db site.db ";
+const std::string kTagArgument = "KEY=VALUE";
 
 int run_list(const Program& program) {
   const Store store = Store::open_read_only(program.database());
@@ -43,6 +46,7 @@ int run_remove(const std::string& name, const Program& program) {
 }
 
 int run_rename(const std::string& from, const std::string& to, const Program& program) {
+  require_name(to, "scene name", "NEW");
   Store::open_read_write(program.database()).rename(from, to);
   program.print({{"renamed", from}, {"scene", to}},
                 "renamed " + cli::printable(from) + " to " + cli::printable(to) + "\n");
@@ -56,28 +60,31 @@ int run_rollback(const std::string& name, const Program& program) {
   return 0;
 }
 
-// "KEY=VALUE"; the value may hold further '='.
-std::pair<std::string, std::string> parse_tag(const std::string& text) {
+// "KEY=VALUE"; the value may hold further '='. An empty one stands for no tag.
+std::pair<std::string, std::optional<std::string>> parse_tag(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw cli::UsageError("KEY=VALUE", '"' + text + "\" is not a key, '=' and a value");
+    throw cli::UsageError(kTagArgument,
+                          '"' + cli::printable(text) + "\" is not a key, '=' and a value");
   }
-  return {text.substr(0, equals), text.substr(equals + 1)};
+  const std::string key = text.substr(0, equals);
+  const std::string value = text.substr(equals + 1);
+  require_name(key, "tag key", kTagArgument);
+  require_tag_value(value, kTagArgument);
+  if (value.empty()) return {key, std::nullopt};
+  return {key, value};
 }
 
 int run_tag(const std::string& name,
             const std::vector<std::string>& texts,
             const Program& program) {
-  std::vector<std::pair<std::string, std::string>> tags;
-  for (const std::string& text : texts) tags.push_back(parse_tag(text));
-  Store store = Store::open_read_write(program.database());
-  for (const auto& [key, value] : tags) {
-    if (value.empty()) {
-      store.untag(name, key);
-    } else {
-      store.tag(name, key, value);
-    }
+  TagChanges changes;
+  for (const std::string& text : texts) {
+    const auto [key, value] = parse_tag(text);
+    changes[key] = value;
   }
+  Store store = Store::open_read_write(program.database());
+  store.change_tags(name, changes);
   const SceneSummary scene = store.show(name);
   std::string text;
   for (const auto& [key, value] : scene.tags) text += cli::printable(key + '=' + value) + '\n';

@@ -7,6 +7,7 @@
 
 #include "cli/help.hpp"
 #include "cli/table.hpp"
+#include "indexer/checked_names.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/long_job.hpp"
 #include "indexer/new_database.hpp"
@@ -42,10 +43,11 @@ int run_export(const TransferArguments& arguments, const Program& program) {
 
 int run_import(const TransferArguments& arguments, const Program& program) {
   const std::string& db = program.database();
-  LongJob job(program);
-  require_writable_database(db);
   std::optional<std::string> as_name;
   if (!arguments.name.empty()) as_name = arguments.name;
+  if (as_name) require_name(*as_name, "scene name", "--as");
+  LongJob job(program);
+  require_writable_database(db);
   std::string name;
   const InsertResult stored = change_or_create(db, [&](Store& store) {
     const InsertResult result = store.import_scene(arguments.file, job.context(), as_name);

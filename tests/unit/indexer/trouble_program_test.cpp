@@ -135,10 +135,23 @@ TEST_F(IndexerTrouble, BadPoseFilesAreStatus7) {
   }
 }
 
-TEST_F(IndexerTrouble, BadNamesAreRefusedBeforeAnyWork) {
+TEST_F(IndexerTrouble, BadNamesAreWrongUsageBeforeAnyWork) {
   for (const char* name : {"", "a/b", "line\nbreak"}) {
-    expect_refused(run({"add", name, path("missing.ply"), "--quiet"}), 7);
+    expect_refused(run({"add", name, path("missing.ply"), "--quiet"}), 2);
+    expect_refused(run({"rename", "room", name}), 2);
+    expect_refused(run({"landmark", "add", "room", name, "--box", "0,0,0,1,1,1"}), 2);
   }
+  expect_refused(run({"import", path("missing.scene"), "--as", "a/b", "--quiet"}), 2);
+  EXPECT_FALSE(std::filesystem::exists(db_));
+}
+
+TEST_F(IndexerTrouble, OneBadTagIsWrongUsageAndNoneIsSet) {
+  add("room");
+  for (const char* tag : {"a/b=1", "=1", "plain", "a=line\nbreak"}) {
+    expect_refused(run({"tag", "room", "good=1", tag}), 2);
+  }
+  expect_refused(run({"tag", "room", "good=1", "none="}), 3);
+  EXPECT_TRUE(run_json({"show", "room"}).at("tags").empty());
 }
 
 TEST_F(IndexerTrouble, AFileThatIsNoDatabaseIsStatus7) {
