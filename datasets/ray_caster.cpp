@@ -234,6 +234,7 @@ void RayCaster::Tree::traverse(const Ray& ray, float limit, const Accept& accept
     std::uint32_t node;
     float distance;
   };
+  if (triangles.empty()) return;  // the root would be a leaf without triangles, that is, no leaf
   constexpr float kNever = std::numeric_limits<float>::infinity();
   std::array<Waiting, kMaxDepth + 4> stack;
   std::size_t waiting = 0;

@@ -11,6 +11,9 @@ namespace {
 constexpr int kFine = 2;  // samples a pixel on each axis
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
+constexpr std::array<std::array<int, 2>, 8> kAround = {
+    {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+
 struct DepthGrid {
   int width, height;
   std::vector<float> nearness;  // kNothing where no point lies
@@ -51,10 +54,37 @@ DepthGrid splat(int width, int height, std::span<const ViewPoint> points, float 
   return grid;
 }
 
+// Closes the gaps between the points of a surface: an empty sample takes the furthest of what lies
+// around it when something does in at least five of eight directions.
+DepthGrid close_gaps(const DepthGrid& grid) {
+  constexpr int kReach = 8 * kFine;
+  constexpr std::size_t kEnough = 5;
+  DepthGrid closed = grid;
+  for (int y = 0; y < grid.height; ++y) {
+    for (int x = 0; x < grid.width; ++x) {
+      if (grid.at(x, y) != kNothing) continue;
+      std::array<float, 8> found{};
+      std::size_t count = 0;
+      for (const auto& [dx, dy] : kAround) {
+        for (int reach = 1; reach <= kReach; ++reach) {
+          const float there = grid.at(x + reach * dx, y + reach * dy);
+          if (there == kNothing) continue;
+          found[count++] = there;
+          break;
+        }
+      }
+      if (count < kEnough) continue;
+      closed.nearness[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid.width) +
+                      static_cast<std::size_t>(x)] =
+          *std::min_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+  }
+  return closed;
+}
+
 // 1 in the open, towards 0 where the surroundings rise above the sample.
 float light(const DepthGrid& grid, int x, int y, float strength) {
-  constexpr std::array<std::array<int, 2>, 8> kAround = {
-      {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+  constexpr float kNoise_m = 0.04F;   // steps below this are the sensor's
   constexpr float kDeepest_m = 0.6F;  // a step above this shades no more
   const float here = grid.at(x, y);
   float rise = 0.0F;
@@ -62,7 +92,7 @@ float light(const DepthGrid& grid, int x, int y, float strength) {
     for (const auto& [dx, dy] : kAround) {
       const float there = grid.at(x + reach * dx, y + reach * dy);
       if (there == kNothing) continue;
-      rise += std::clamp(there - here, 0.0F, kDeepest_m);
+      rise += std::clamp(there - here - kNoise_m, 0.0F, kDeepest_m);
     }
   }
   return std::exp(-strength * rise * 0.45F);
@@ -78,7 +108,8 @@ void draw_points(Canvas& canvas,
                  std::span<const ViewPoint> points,
                  const PointStyle& style) {
   if (width <= 0 || height <= 0) return;
-  const DepthGrid grid = splat(width, height, points, style.radius_px);
+  DepthGrid grid = splat(width, height, points, style.radius_px);
+  if (style.close_gaps) grid = close_gaps(grid);
   const float span = std::max(style.near_m - style.far_m, 1e-6F);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

@@ -22,6 +22,7 @@ struct PointStyle {
   float far_m = 0.0F, near_m = 1.0F;
   float shading = 1.0F;  // of edges against what lies behind; 0: flat
   float alpha = 1.0F;
+  bool close_gaps = false;  // between points up to 16 pixels apart
 };
 
 // Draws points as small discs, the nearest on top, edges smoothed, with the shading of depth steps

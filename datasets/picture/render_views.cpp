@@ -18,10 +18,11 @@ namespace {
 const Colour kPaper(1.0F, 1.0F, 1.0F);
 const Colour kInk(0.16F, 0.18F, 0.22F);
 const Colour kFaintInk(0.52F, 0.55F, 0.60F);
-const Colour kFloorGrey(0.93F, 0.94F, 0.95F);
-const Colour kTopGrey(0.50F, 0.54F, 0.60F);
-const Colour kOrange(0.96F, 0.47F, 0.06F);
-const Colour kDeepOrange(0.80F, 0.32F, 0.02F);
+const Colour kFloorGrey(0.89F, 0.90F, 0.92F);
+const Colour kTopGrey(0.48F, 0.52F, 0.58F);
+const Colour kPaleOrange(1.00F, 0.60F, 0.16F);
+const Colour kOrange(0.97F, 0.42F, 0.02F);
+const Colour kDeepOrange(0.85F, 0.33F, 0.0F);
 const std::array<Colour, 3> kAxes = {
     Colour(0.85F, 0.12F, 0.15F), Colour(0.10F, 0.60F, 0.20F), Colour(0.13F, 0.32F, 0.85F)};
 
@@ -98,6 +99,7 @@ Drawing lay_out(const PointCloud& place,
   if (!query.empty() && into < 0.0) turn += std::numbers::pi;
   T = Eigen::Isometry3d(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ())) * T;
   drawing.place = carried(place, T);
+  drop_strays(drawing.place);
   if (drawing.place.empty()) {
     throw Error(ErrorCode::kInvalidArgument, "the place has no finite points to draw");
   }
@@ -172,8 +174,8 @@ void draw_query(Canvas& canvas, const Panel& panel, const Drawing& drawing) {
               panel.height,
               points,
               {.radius_px = points.size() > 50'000 ? 0.6F : 1.3F,
-               .far = kOrange,
-               .near = kDeepOrange,
+               .far = kPaleOrange,
+               .near = kOrange,
                .far_m = far,
                .near_m = near,
                .shading = 0.5F,

@@ -1,8 +1,11 @@
 #include "datasets/picture/storey_cut.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <unordered_map>
 #include <vector>
 
 namespace landmarkdb::datasets {
@@ -74,6 +77,41 @@ double straighten_rad(std::span<const Eigen::Vector3f> points) {
     }
   }
   return best_rad;
+}
+
+void drop_strays(std::vector<Eigen::Vector3f>& points) {
+  constexpr float kCell_m = 0.12F;
+  constexpr double kDense = 12.0;    // points a cell on the mean; below this nothing is dropped
+  constexpr std::uint32_t kFew = 8;  // in a cell and the 26 around it: this is air
+  const auto key_of = [](const std::array<std::int64_t, 3>& cell) {
+    // 21 bits an axis: 250 km of cells; beyond, cells may share a key, which does no harm here.
+    std::uint64_t key = 0;
+    for (const std::int64_t i : cell) {
+      key = (key << 21U) | (static_cast<std::uint64_t>(i + (1 << 20)) & 0x1fffffU);
+    }
+    return key;
+  };
+  const auto cell_of = [](const Eigen::Vector3f& p) {
+    std::array<std::int64_t, 3> cell{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float at = std::floor(p[static_cast<int>(k)] / kCell_m);
+      cell[k] = static_cast<std::int64_t>(std::clamp(at, -1e9F, 1e9F));
+    }
+    return cell;
+  };
+  std::unordered_map<std::uint64_t, std::uint32_t> counts;
+  for (const Eigen::Vector3f& p : points) ++counts[key_of(cell_of(p))];
+  if (static_cast<double>(points.size()) < kDense * static_cast<double>(counts.size())) return;
+  std::erase_if(points, [&](const Eigen::Vector3f& p) {
+    const std::array<std::int64_t, 3> cell = cell_of(p);
+    std::uint32_t around = 0;
+    for (int i = 0; i < 27 && around <= kFew; ++i) {
+      const auto found =
+          counts.find(key_of({cell[0] + i % 3 - 1, cell[1] + i / 3 % 3 - 1, cell[2] + i / 9 - 1}));
+      if (found != counts.end()) around += found->second;
+    }
+    return around <= kFew;
+  });
 }
 
 }  // namespace landmarkdb::datasets

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -19,5 +20,9 @@ StoreyCut find_storey(std::span<const Eigen::Vector3f> points, const Eigen::Vect
 // The turn about z that lays most of the place's extent along x: of the smallest box around it seen
 // from above. Radians, in (-pi/2, pi/2].
 double straighten_rad(std::span<const Eigen::Vector3f> points);
+
+// Takes out points that hang in the air by themselves, where clouds are dense enough to tell: mixed
+// pixels hide what lies below them. Keeps the order of the rest.
+void drop_strays(std::vector<Eigen::Vector3f>& points);
 
 }  // namespace landmarkdb::datasets

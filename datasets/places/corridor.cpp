@@ -8,6 +8,8 @@
 namespace landmarkdb::datasets {
 namespace {
 
+constexpr double kRailing_m = 1.0;  // must not come out of the floor above
+
 struct Plan {
   double length, width, bay_x0, bay_x1, bay_depth;
   std::vector<Eigen::Vector2d> corners;
@@ -131,7 +133,7 @@ void build_corridor(Storey& storey) {
   add_stairs(storey.planner(),
              at(plan.bay_x0 + 0.85, plan.width + 0.4),
              1.3,
-             std::min(storey.height_m, (plan.bay_depth - 0.5) / 0.29 * 0.17));
+             std::min(storey.height_m - kRailing_m, (plan.bay_depth - 0.5) / 0.29 * 0.17));
   storey.taken.push_back({plan.bay_x0 + 0.85, plan.width + 0.5 * plan.bay_depth, 1.2});
   add_ceiling(storey, plan);
   furnish_walls(storey, walls);
