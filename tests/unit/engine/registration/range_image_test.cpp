@@ -1,0 +1,219 @@
+#include "engine/registration/range_image.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/random.hpp"
+#include "engine/geometry/pose.hpp"
+
+namespace landmarkdb {
+namespace {
+
+constexpr double kStep = std::numbers::pi / 180.0;
+constexpr float kPatch_m = 0.05F;
+constexpr SightTolerance kTolerance{0.1F, 0.02F};
+using Points = std::vector<Eigen::Vector3f>;
+
+// A depth camera's view of the plane z = depth_m: x, y within half of it, a ray every 0.3 deg.
+Points wall(float depth_m) {
+  Points points;
+  for (int i = -100; i <= 100; ++i) {
+    for (int j = -100; j <= 100; ++j) {
+      points.emplace_back(0.005F * static_cast<float>(i) * depth_m,
+                          0.005F * static_cast<float>(j) * depth_m,
+                          depth_m);
+    }
+  }
+  return points;
+}
+
+// A patch of the plane z = depth_m, points every 3 cm, as an entry has them.
+Points patch(const Eigen::Vector2f& low, const Eigen::Vector2f& high, float depth_m) {
+  Points points;
+  for (float x = low.x(); x <= high.x(); x += 0.03F) {
+    for (float y = low.y(); y <= high.y(); y += 0.03F) points.emplace_back(x, y, depth_m);
+  }
+  return points;
+}
+
+SightCounts compare(const RangeImage& image,
+                    const Points& surface,
+                    const Eigen::Isometry3d& T = Eigen::Isometry3d::Identity()) {
+  return image.compare(surface, T, kPatch_m, kTolerance);
+}
+
+TEST(RangeImage, AgreesWithTheSurfaceThatWasMeasured) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  EXPECT_NEAR(image.max_range_m(), std::sqrt(2.0 * 2.0 + 1.0 + 1.0), 1e-5);
+  EXPECT_EQ(image.step_rad(), kStep);
+  const SightCounts counts = compare(image, patch({-1, -1}, {1, 1}, 2.0F));
+  EXPECT_GT(counts.measured, 1500U);  // 53 deg by 53 deg
+  EXPECT_GT(static_cast<double>(counts.agree), 0.99 * static_cast<double>(counts.measured));
+  EXPECT_EQ(counts.crossed, 0U);
+  EXPECT_EQ(counts.hidden, 0U);
+}
+
+TEST(RangeImage, SeesThatARayWentThroughASurfaceBeforeTheWall) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  const SightCounts counts = compare(image, patch({-0.3F, -0.3F}, {0.3F, 0.3F}, 1.0F));
+  EXPECT_GT(counts.crossed, 800U);
+  EXPECT_EQ(counts.agree, 0U);
+  EXPECT_EQ(counts.hidden, 0U);
+  EXPECT_EQ(counts.predicted(), counts.crossed);
+}
+
+TEST(RangeImage, TakesWhatLiesBehindTheWallForHidden) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  const SightCounts counts = compare(image, patch({-1, -1}, {1, 1}, 4.0F));
+  EXPECT_GT(counts.hidden, 500U);
+  EXPECT_EQ(counts.crossed, 0U);
+  EXPECT_EQ(counts.agree, 0U);
+}
+
+TEST(RangeImage, LetsTheNearerOfTwoSurfacesDecide) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  Points both = patch({-2, -2}, {2, 2}, 4.0F);
+  const Points front = patch({-1.2F, -1.2F}, {1.2F, 1.2F}, 2.0F);
+  both.insert(both.begin(), front.begin(), front.end());
+  const SightCounts counts = compare(image, both);
+  EXPECT_EQ(counts.hidden, 0U);
+  EXPECT_GT(counts.agree, 1500U);
+}
+
+TEST(RangeImage, SaysNothingWhereTheEntryHasNothing) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  EXPECT_EQ(compare(image, {}).predicted(), 0U);
+  EXPECT_GT(compare(image, {}).measured, 0U);
+  // Beside and behind the camera nothing was measured.
+  EXPECT_EQ(compare(image, patch({-1, -1}, {1, 1}, -2.0F)).predicted(), 0U);
+  Points beside;
+  for (const Eigen::Vector3f& p : patch({-1, -1}, {1, 1}, 2.0F))
+    beside.emplace_back(p.z(), p.y(), p.x());
+  for (Eigen::Vector3f& p : beside) p.z() = std::min(p.z(), 0.5F);
+  EXPECT_EQ(compare(image, beside).predicted(), 0U);
+}
+
+TEST(RangeImage, GivesTheRangeItsSlack) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  // 0.1 m and 2 % of the range: 0.14 m and more.
+  EXPECT_EQ(compare(image, patch({-0.6F, -0.6F}, {0.6F, 0.6F}, 1.88F)).crossed, 0U);
+  EXPECT_EQ(compare(image, patch({-0.6F, -0.6F}, {0.6F, 0.6F}, 2.12F)).hidden, 0U);
+  EXPECT_GT(compare(image, patch({-0.6F, -0.6F}, {0.6F, 0.6F}, 1.75F)).crossed, 100U);
+  EXPECT_GT(compare(image, patch({-0.6F, -0.6F}, {0.6F, 0.6F}, 2.3F)).hidden, 100U);
+}
+
+TEST(RangeImage, LetsSilhouettesDecideNothing) {
+  // A post before a wall. The entry has both, half a cell aside: its edges must not count as
+  // crossed or hidden.
+  Points seen;
+  for (const Eigen::Vector3f& p : wall(4.0F)) {
+    const bool post = std::abs(p.x() / p.z()) < 0.1F;
+    seen.push_back(post ? Eigen::Vector3f(0.5F * p) : p);
+  }
+  Points entry = patch({-1.9F, -1.9F}, {1.9F, 1.9F}, 4.0F);
+  const Points post = patch({-0.2F, -1.0F}, {0.2F, 1.0F}, 2.0F);
+  entry.insert(entry.end(), post.begin(), post.end());
+  const RangeImage image(seen, Eigen::Vector3f::Zero(), kStep);
+  Eigen::Isometry3d aside = Eigen::Isometry3d::Identity();
+  aside.linear() = rotation_from_vector({0, 0.5 * kStep, 0});
+  const SightCounts counts = compare(image, entry, aside);
+  EXPECT_GT(counts.agree, 1000U);
+  EXPECT_LT(static_cast<double>(counts.crossed + counts.hidden),
+            0.01 * static_cast<double>(counts.predicted()));
+}
+
+TEST(RangeImage, CarriesTheEntryIntoItsOwnFrame) {
+  Random random(1);
+  Eigen::Isometry3d T_here_entry = Eigen::Isometry3d::Identity();
+  T_here_entry.linear() = rotation_from_vector({0.4, -1.0, 2.0});
+  T_here_entry.translation() = Eigen::Vector3d(10, -20, 5);
+  Points entry;
+  for (const Eigen::Vector3f& p : patch({-1, -1}, {1, 1}, 2.0F)) {
+    entry.emplace_back((T_here_entry.inverse() * p.cast<double>()).cast<float>());
+  }
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  const SightCounts counts = compare(image, entry, T_here_entry);
+  EXPECT_GT(static_cast<double>(counts.agree), 0.99 * static_cast<double>(counts.measured));
+}
+
+TEST(RangeImage, LooksFromTheViewpointItIsGiven) {
+  const Eigen::Vector3f viewpoint(5, -3, 1);
+  Points seen = wall(2.0F);
+  Points entry = patch({-0.3F, -0.3F}, {0.3F, 0.3F}, 1.0F);
+  for (Eigen::Vector3f& p : seen) p += viewpoint;
+  for (Eigen::Vector3f& p : entry) p += viewpoint;
+  const RangeImage image(seen, viewpoint, kStep);
+  EXPECT_GT(compare(image, entry).crossed, 800U);
+}
+
+// A sphere of 5 m around the sensor, `columns` points in each of `rings` between two elevations.
+Points ball(int rings, int columns, double lowest, double highest) {
+  Points points;
+  for (int i = 0; i < rings; ++i) {
+    const double elevation = rings == 1 ? lowest : lowest + (highest - lowest) * i / (rings - 1);
+    for (int j = 0; j < columns; ++j) {
+      const double azimuth = 2.0 * std::numbers::pi * j / columns;
+      points.push_back(5.0F * Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
+                                              std::cos(elevation) * std::sin(azimuth),
+                                              std::sin(elevation))
+                                  .cast<float>());
+    }
+  }
+  return points;
+}
+
+TEST(RangeImage, SeesAllRoundWithoutAPole) {
+  const Points all_round = ball(361, 720, -0.5 * std::numbers::pi, 0.5 * std::numbers::pi);
+  const RangeImage image(all_round, Eigen::Vector3f::Zero(), 2.0 * kStep);
+  EXPECT_EQ(image.step_rad(), 2.0 * kStep);
+  const SightCounts counts = compare(image, all_round);
+  EXPECT_EQ(counts.measured, 6U * 45U * 45U) << "every direction of every face";
+  EXPECT_EQ(counts.agree, counts.measured);
+  // A bubble inside is crossed wherever it is, also where faces meet and straight up.
+  for (const Eigen::Vector3f& direction : {Eigen::Vector3f(1, 1, 1),
+                                           Eigen::Vector3f(0, 0, 1),
+                                           Eigen::Vector3f(-1, -1, 0),
+                                           Eigen::Vector3f(0.2F, -1, -1)}) {
+    Points bubble;
+    for (const Eigen::Vector3f& p : ball(61, 120, -1.5, 1.5)) {
+      bubble.push_back(0.1F * p + 2.5F * direction.normalized());
+    }
+    const SightCounts inside = compare(image, bubble);
+    EXPECT_GT(inside.crossed, 50U);
+    EXPECT_EQ(inside.agree + inside.hidden, 0U);
+  }
+}
+
+TEST(RangeImage, WidensItsCellsForSparseRings) {
+  // Sixteen lines two degrees apart: with cells of one degree every other row would be empty.
+  const Points lidar = ball(16, 1800, -0.2618, 0.2618);
+  const RangeImage image(lidar, Eigen::Vector3f::Zero(), kStep);
+  EXPECT_GT(image.step_rad(), kStep);
+  EXPECT_LT(image.step_rad(), 0.15);
+  const Points around = ball(121, 720, -0.6, 0.6);
+  const SightCounts counts = compare(image, around);
+  EXPECT_GT(counts.measured, 100U);
+  EXPECT_EQ(counts.crossed, 0U);
+  EXPECT_EQ(counts.agree, counts.measured);
+  Points nearer = around;
+  for (Eigen::Vector3f& p : nearer) p *= 0.5F;
+  EXPECT_EQ(compare(image, nearer).crossed, counts.measured);
+}
+
+TEST(RangeImage, HoldsAgainstCloudsThatHoldNothing) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Points& points :
+       {Points{}, Points{{0, 0, 0}}, Points{{nan, 1, 1}}, Points{{0, 0, 1}}}) {
+    const RangeImage image(points, Eigen::Vector3f::Zero(), kStep);
+    EXPECT_EQ(compare(image, patch({-1, -1}, {1, 1}, 2.0F)).predicted(), 0U);
+  }
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  EXPECT_EQ(compare(image, {{nan, 0, 2}, {0, 0, 0}}).predicted(), 0U);
+}
+
+}  // namespace
+}  // namespace landmarkdb

@@ -1,0 +1,133 @@
+#include "engine/registration/surface_grid.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/random.hpp"
+
+namespace landmarkdb {
+namespace {
+
+// Cells as the grid cuts them: float, so that far from zero both round alike.
+Eigen::Vector3f centre_of_cell(const Eigen::Vector3f& p, float cell_m) {
+  const float inverse = static_cast<float>(1.0 / static_cast<double>(cell_m));
+  return ((p.array() * inverse).floor() + 0.5F).matrix() * cell_m;
+}
+
+struct Cloud {
+  std::vector<Eigen::Vector3f> points, normals;
+};
+
+Cloud random_cloud(std::size_t count, const Eigen::Vector3f& around, float size, Random& random) {
+  Cloud cloud;
+  const auto draw = [&] { return static_cast<float>(random.uniform(-1.0, 1.0)); };
+  for (std::size_t i = 0; i < count; ++i) {
+    cloud.points.emplace_back(around + size * Eigen::Vector3f(draw(), draw(), draw()));
+    cloud.normals.emplace_back(Eigen::Vector3f(draw(), draw(), draw() + 2.0F).normalized());
+  }
+  return cloud;
+}
+
+// Holds near() against the nearest of all points to the centre of the cell asked.
+void expect_like_brute_force(const Eigen::Vector3f& around, float cell_m, int reach) {
+  Random random(1);
+  const float size = 20.0F * cell_m;
+  const Cloud cloud = random_cloud(3000, around, size, random);
+  const SurfaceGrid grid(cloud.points, cloud.normals, cell_m, reach);
+  const float rounding = 4e-6F * around.cwiseAbs().maxCoeff() + 1e-5F * cell_m;
+  int found = 0, empty = 0;
+  const Cloud asked = random_cloud(1500, around, 1.3F * size, random);
+  for (const Eigen::Vector3f& p : asked.points) {
+    const Eigen::Vector3f centre = centre_of_cell(p, cell_m);
+    float nearest = std::numeric_limits<float>::infinity();
+    for (const Eigen::Vector3f& q : cloud.points) nearest = std::min(nearest, (q - centre).norm());
+    const Surfel* surfel = grid.near(p);
+    // Within reach of the cell's centre there must be an answer, the best one.
+    if (nearest < grid.reach_m() - rounding) {
+      ASSERT_NE(surfel, nullptr);
+      ASSERT_NEAR((surfel->point - centre).norm(), nearest, rounding);
+    }
+    // What lies further than reach and one cell's diagonal must not be named.
+    if (nearest > grid.reach_m() + 0.87F * cell_m + rounding) {
+      ASSERT_EQ(surfel, nullptr);
+    }
+    surfel != nullptr ? ++found : ++empty;
+  }
+  EXPECT_GT(found, 20);
+  EXPECT_GT(empty, 20);
+}
+
+TEST(SurfaceGrid, NamesTheNearestSurfelWithinReachAndNothingBeyond) {
+  for (const int reach : {0, 1, 2, 3}) {
+    expect_like_brute_force(Eigen::Vector3f::Zero(), 0.05F, reach);
+  }
+}
+
+TEST(SurfaceGrid, WorksOnBothSidesOfZeroAndAcrossBlocks) {
+  expect_like_brute_force({-0.4F, 0.4F, -0.8F}, 0.05F, 2);  // a block is 0.4 m
+  expect_like_brute_force({-7.3F, -2.1F, -11.0F}, 0.05F, 2);
+  expect_like_brute_force({0.001F, -0.002F, 0.0F}, 0.0001F, 2);
+}
+
+TEST(SurfaceGrid, WorksFarFromZero) {
+  expect_like_brute_force({900.0F, -700.0F, 300.0F}, 0.05F, 2);
+  expect_like_brute_force({-4000.0F, 9000.0F, 0.0F}, 0.5F, 2);
+}
+
+TEST(SurfaceGrid, GivesBackPointAndNormalOfOneAndTheSameSurfel) {
+  Random random(2);
+  const Cloud cloud = random_cloud(500, Eigen::Vector3f::Zero(), 3.0F, random);
+  const SurfaceGrid grid(cloud.points, cloud.normals, 0.01, 1);
+  ASSERT_EQ(grid.surfels().size(), 500U);
+  int same = 0;
+  for (std::size_t i = 0; i < 500; ++i) {
+    const Surfel* surfel = grid.near(cloud.points[i]);
+    ASSERT_NE(surfel, nullptr);
+    if (surfel->point != cloud.points[i]) continue;  // two in one cell
+    EXPECT_EQ(surfel->normal, cloud.normals[i]);
+    ++same;
+  }
+  EXPECT_GT(same, 480);
+}
+
+TEST(SurfaceGrid, GrowsWithItsSurfaceAndLosesNothing) {
+  // A plane of 40 m: thousands of blocks, several growths of the table.
+  Cloud cloud;
+  for (int i = 0; i < 200; ++i) {
+    for (int j = 0; j < 200; ++j) {
+      cloud.points.emplace_back(
+          0.2F * static_cast<float>(i) - 20.0F, 0.2F * static_cast<float>(j) - 20.0F, 0.0F);
+      cloud.normals.emplace_back(0.0F, 0.0F, 1.0F);
+    }
+  }
+  const SurfaceGrid grid(cloud.points, cloud.normals, 0.1, 1);
+  for (const Eigen::Vector3f& p : cloud.points) {
+    const Surfel* surfel = grid.near(p + Eigen::Vector3f(0.01F, 0.01F, 0.05F));
+    ASSERT_NE(surfel, nullptr);
+    ASSERT_LT((surfel->point - p).norm(), 0.15F);
+  }
+  EXPECT_EQ(grid.near({0.0F, 0.0F, 0.5F}), nullptr);
+  EXPECT_GT(grid.memory_bytes(), 40'000 * sizeof(Surfel));
+}
+
+TEST(SurfaceGrid, AnswersForPointsThatNoScanReaches) {
+  const SurfaceGrid grid({{Eigen::Vector3f(1, 2, 3)}}, {{Eigen::Vector3f(0, 0, 1)}}, 0.05, 2);
+  const float far = std::numeric_limits<float>::max();
+  EXPECT_EQ(grid.near({far, 0, 0}), nullptr);
+  EXPECT_EQ(grid.near({-far, far, -far}), nullptr);
+  EXPECT_EQ(grid.near({1e9F, -1e9F, 1e9F}), nullptr);
+  const float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(grid.near({infinity, 0, -infinity}), nullptr);
+  EXPECT_NE(grid.near({1, 2, 3}), nullptr);
+}
+
+TEST(SurfaceGrid, IsEmptyWithoutPoints) {
+  const SurfaceGrid grid({}, {}, 0.05, 2);
+  EXPECT_EQ(grid.near({0, 0, 0}), nullptr);
+  EXPECT_TRUE(grid.surfels().empty());
+}
+
+}  // namespace
+}  // namespace landmarkdb
