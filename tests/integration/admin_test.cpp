@@ -14,11 +14,6 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-// A room that is quickly described.
-SyntheticScene small_room(std::uint64_t seed) {
-  return make_scene({.seed = seed, .stations = 1, .rays = 15'000});
-}
-
 std::vector<std::string> names(const json& list) {
   std::vector<std::string> out;
   for (const json& scene : list["scenes"]) out.push_back(scene["name"]);
@@ -28,11 +23,11 @@ std::vector<std::string> names(const json& list) {
 TEST(Scenes, AreAddedShownTaggedRenamedRolledBackAndRemovedOverTheSocket) {
   const TempFolder folder;
   const std::string db = folder / "small.db";
-  ASSERT_EQ(index_scene(folder, db, "first", small_room(1)).status, 0);
+  ASSERT_EQ(index_scene(folder, db, "first", make_small_room(1)).status, 0);
   ServerProcess server(db);
 
   const std::string cloud = folder / "second.pcd";
-  write_cloud(cloud, small_room(2).scans.front());
+  write_cloud(cloud, make_small_room(2).scans.front());
   const Outcome added = server.client({"--json", "scene", "add", "second", cloud, "--up", "0,0,1"});
   ASSERT_EQ(added.status, 0) << added.out << added.err;
   EXPECT_EQ(added.json()["name"], "second");
@@ -62,9 +57,9 @@ TEST(Scenes, AreAddedShownTaggedRenamedRolledBackAndRemovedOverTheSocket) {
 TEST(Scenes, AddedByTheIndexerAreServedAfterReload) {
   const TempFolder folder;
   const std::string db = folder / "small.db";
-  ASSERT_EQ(index_scene(folder, db, "first", small_room(1)).status, 0);
+  ASSERT_EQ(index_scene(folder, db, "first", make_small_room(1)).status, 0);
   ServerProcess server(db);
-  ASSERT_EQ(index_scene(folder, db, "late", small_room(2)).status, 0);
+  ASSERT_EQ(index_scene(folder, db, "late", make_small_room(2)).status, 0);
   const Outcome reloaded = server.client({"--json", "reload"});
   EXPECT_EQ(reloaded.status, 0) << reloaded.err;
   EXPECT_EQ(reloaded.json()["scenes"], 2);
@@ -75,7 +70,7 @@ TEST(Scenes, AddedByTheIndexerAreServedAfterReload) {
 TEST(Scenes, StayAsTheyAreOnAReadOnlyServer) {
   const TempFolder folder;
   const std::string db = folder / "small.db";
-  ASSERT_EQ(index_scene(folder, db, "first", small_room(1)).status, 0);
+  ASSERT_EQ(index_scene(folder, db, "first", make_small_room(1)).status, 0);
   ServerProcess server(db, {"--read-only"});
   const Outcome refused = server.client({"scene", "remove", "first"});
   EXPECT_EQ(refused.status, 9) << refused.err;
@@ -85,7 +80,7 @@ TEST(Scenes, StayAsTheyAreOnAReadOnlyServer) {
 TEST(Server, TellsHealthAndFigures) {
   const TempFolder folder;
   const std::string db = folder / "small.db";
-  ASSERT_EQ(index_scene(folder, db, "first", small_room(1)).status, 0);
+  ASSERT_EQ(index_scene(folder, db, "first", make_small_room(1)).status, 0);
   ServerProcess server(db);
   EXPECT_EQ(server.client({"--json", "health"}).json()["ready"], true);
   const json stats = server.client({"--json", "stats"}).json();
@@ -97,7 +92,7 @@ TEST(Server, TellsHealthAndFigures) {
 TEST(Server, AsksForTheTokenItWasGiven) {
   const TempFolder folder;
   const std::string db = folder / "small.db";
-  ASSERT_EQ(index_scene(folder, db, "first", small_room(1)).status, 0);
+  ASSERT_EQ(index_scene(folder, db, "first", make_small_room(1)).status, 0);
   const std::string token = folder / "token";
   const std::string wrong = folder / "wrong";
   std::ofstream(token) << "correct-horse-battery-staple\n";

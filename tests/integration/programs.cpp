@@ -9,11 +9,9 @@
 
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-extern char** environ;
 
 namespace landmarkdb::testing {
 namespace {
@@ -51,6 +49,12 @@ std::vector<std::string> server_arguments(const std::string& db,
   return arguments;
 }
 
+// In the child, between fork and exec: system calls only.
+void redirect(const char* path, int flags, int descriptor) {
+  const int file = ::open(path, flags, 0600);
+  if (file < 0 || ::dup2(file, descriptor) < 0) ::_exit(127);
+}
+
 // What stands behind the first `mark` in the text, up to the line's end; empty without a full line.
 std::string behind(const std::string& text, const std::string& mark) {
   const std::size_t at = text.find(mark);
@@ -82,15 +86,18 @@ Running::Running(const std::string& program, const std::vector<std::string>& arg
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
 
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  const int flags = O_WRONLY | O_CREAT | O_TRUNC;
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, (folder_ / "out").c_str(), flags, 0600);
-  posix_spawn_file_actions_addopen(&files, STDERR_FILENO, (folder_ / "err").c_str(), flags, 0600);
-  const int rc = posix_spawn(&pid_, path.c_str(), &files, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  if (rc != 0) throw std::runtime_error("cannot start " + path);
+  const std::string out = folder_ / "out";
+  const std::string err = folder_ / "err";
+  pid_ = ::fork();
+  if (pid_ < 0) throw std::runtime_error("cannot start " + path);
+  if (pid_ == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is killed leaves no server behind
+    redirect("/dev/null", O_RDONLY, STDIN_FILENO);
+    redirect(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO);
+    redirect(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
+    ::execv(path.c_str(), argv.data());
+    ::_exit(127);
+  }
 }
 
 Running::~Running() {

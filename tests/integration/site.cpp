@@ -29,6 +29,10 @@ Outcome index_scene(const TempFolder& folder,
   return run("landmarkdb-indexer", arguments);
 }
 
+SyntheticScene make_small_room(std::uint64_t seed) {
+  return make_scene({.seed = seed, .stations = 1, .rays = 15'000});
+}
+
 Site::Site()
     : db(folder / "site.db"), room(make_scene({.seed = 1})), elsewhere(make_scene({.seed = 2})) {
   const Outcome indexed = index_scene(folder, db, "room", room);

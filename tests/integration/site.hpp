@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <Eigen/Geometry>
@@ -15,6 +16,9 @@ Outcome index_scene(const TempFolder& folder,
                     const std::string& db,
                     const std::string& name,
                     const SyntheticScene& scene);
+
+// A room with so few points that it is described in a moment.
+SyntheticScene make_small_room(std::uint64_t seed);
 
 // A database with the room of seed 1, "room", and clouds to ask about; made once a process.
 struct Site {

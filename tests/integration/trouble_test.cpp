@@ -159,7 +159,9 @@ class BadCloud : public ::testing::TestWithParam<const char*> {
 
 TEST_P(BadCloud, IsRefusedByTheClientWithItsName) {
   const TempFolder folder;
-  ServerProcess server(site().db);
+  const std::string db = folder / "small.db";
+  ASSERT_EQ(index_scene(folder, db, "room", make_small_room(1)).status, 0);
+  ServerProcess server(db);
   const Outcome outcome = server.client({"--json", "query", written(folder, GetParam())});
   EXPECT_EQ(outcome.status, 7) << outcome.out << outcome.err;
   EXPECT_TRUE(outcome.json().contains("error"));
@@ -177,7 +179,9 @@ TEST_P(BadCloud, IsRefusedByTheIndexerAndLeavesNoScene) {
 
 TEST_P(BadCloud, IsRefusedOverTheSocketToo) {
   const TempFolder folder;
-  ServerProcess server(site().db);
+  const std::string db = folder / "small.db";
+  ASSERT_EQ(index_scene(folder, db, "room", make_small_room(1)).status, 0);
+  ServerProcess server(db);
   const Outcome outcome = server.client({"scene", "add", "bad", written(folder, GetParam())});
   EXPECT_EQ(outcome.status, 7) << outcome.err;
   EXPECT_EQ(server.client({"scene", "show", "bad"}).status, 3);
