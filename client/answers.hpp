@@ -21,6 +21,8 @@ struct SceneVersion {
   std::string created;
   bool active = false;
   std::uint64_t points = 0, keypoints = 0, bytes = 0;
+  std::string retired;  // empty while active
+  std::string damage;   // what is wrong with it, where a check found something
 };
 
 // A scene as the server lists it. Lengths in metres, scene frame.
@@ -31,16 +33,18 @@ struct SceneInfo {
   EntryKind kind = EntryKind::kPlace;
   bool quarantined = false;  // damaged; the others are served without it
   std::string state_reason;  // why, for a quarantined one
-  std::uint64_t points = 0, keypoints = 0, bytes = 0;
-  std::string created;
+  std::uint64_t points = 0, keypoints = 0;
+  std::uint64_t bytes = 0;  // of all versions
+  std::string created;      // when the scene was first added
   FeatureOptions options;
   std::map<std::string, std::string> tags;
   std::vector<Landmark> landmarks;
   std::vector<std::string> sources;
   std::vector<std::string> warnings;
   std::optional<Eigen::Vector3d> up;
-  Eigen::Vector3d min_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d max_m = Eigen::Vector3d::Zero();
+  // Bounds of the points; only of Client::scene(), and not of a quarantined one.
+  std::optional<Eigen::Vector3d> min_m;
+  std::optional<Eigen::Vector3d> max_m;
   std::vector<SceneVersion> versions;  // only of Client::scene()
 };
 

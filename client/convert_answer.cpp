@@ -102,7 +102,9 @@ SceneVersion scene_version(const v1::SceneVersion& version) {
           .active = version.active(),
           .points = version.points(),
           .keypoints = version.keypoints(),
-          .bytes = version.bytes()};
+          .bytes = version.bytes(),
+          .retired = version.retired(),
+          .damage = version.damage()};
 }
 
 std::string health_name(v1::HealthStatus value) {
@@ -172,8 +174,8 @@ SceneInfo from_proto(const v1::SceneInfo& scene) {
   out.sources.assign(scene.sources().begin(), scene.sources().end());
   out.warnings.assign(scene.warnings().begin(), scene.warnings().end());
   if (scene.has_up()) out.up = vector(scene.up());
-  out.min_m = vector(scene.min_m());
-  out.max_m = vector(scene.max_m());
+  if (scene.has_min_m()) out.min_m = vector(scene.min_m());
+  if (scene.has_max_m()) out.max_m = vector(scene.max_m());
   for (const v1::SceneVersion& version : scene.versions()) {
     out.versions.push_back(scene_version(version));
   }

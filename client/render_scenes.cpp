@@ -23,12 +23,15 @@ Json landmark_json(const Landmark& landmark) {
 }
 
 Json version_json(const SceneVersion& version) {
-  return {{"version", version.version},
-          {"created", version.created},
-          {"active", version.active},
-          {"points", version.points},
-          {"keypoints", version.keypoints},
-          {"bytes", version.bytes}};
+  Json out = {{"version", version.version},
+              {"created", version.created},
+              {"active", version.active},
+              {"points", version.points},
+              {"keypoints", version.keypoints},
+              {"bytes", version.bytes}};
+  if (!version.retired.empty()) out["retired"] = version.retired;
+  if (!version.damage.empty()) out["damage"] = version.damage;
+  return out;
 }
 
 std::string number_text(double value) {
@@ -53,6 +56,13 @@ std::string tags_text(const std::map<std::string, std::string>& tags) {
   return joined(parts);
 }
 
+std::string state_text(const SceneVersion& version) {
+  std::string state = version.active ? "active" : "";
+  if (!version.damage.empty())
+    state += (state.empty() ? "" : ", ") + ("damaged: " + version.damage);
+  return state;
+}
+
 std::string versions_text(const std::vector<SceneVersion>& versions) {
   cli::Table table({{"VERSION", Align::kRight},
                     {"CREATED"},
@@ -66,7 +76,7 @@ std::string versions_text(const std::vector<SceneVersion>& versions) {
                cli::count_text(version.points),
                cli::count_text(version.keypoints),
                cli::bytes_text(version.bytes),
-               version.active ? "active" : ""});
+               state_text(version)});
   }
   return table.text();
 }
@@ -105,8 +115,10 @@ Json scene_json(const SceneInfo& scene) {
   out["sources"] = scene.sources;
   out["warnings"] = scene.warnings;
   out["up"] = scene.up ? vector_json(*scene.up) : Json(nullptr);
-  out["min_m"] = vector_json(scene.min_m);
-  out["max_m"] = vector_json(scene.max_m);
+  if (scene.min_m && scene.max_m) {
+    out["min_m"] = vector_json(*scene.min_m);
+    out["max_m"] = vector_json(*scene.max_m);
+  }
   if (scene.quarantined) out["state_reason"] = scene.state_reason;
   if (!scene.versions.empty()) {
     out["versions"] = Json::array();
@@ -164,7 +176,9 @@ std::string scene_text(const SceneInfo& scene) {
            ", " + number_text(scene.options.keypoint_spacing_m) + " m apart)");
   line("voxel", number_text(scene.options.voxel_m) + " m");
   line("descriptor radius", number_text(scene.options.shot_radius_m) + " m");
-  line("bounds", vector_text(scene.min_m) + "  to  " + vector_text(scene.max_m) + " m");
+  if (scene.min_m && scene.max_m) {
+    line("bounds", vector_text(*scene.min_m) + "  to  " + vector_text(*scene.max_m) + " m");
+  }
   line("up", scene.up ? vector_text(*scene.up) : "not known");
   line("size", cli::bytes_text(scene.bytes));
   line("sources", joined(scene.sources));

@@ -49,6 +49,11 @@ void FrameReader::feed(std::string_view bytes) {
 }
 
 Frame FrameReader::next() {
+  // The last frame has been used: what it filled is not kept while the other end is silent.
+  if (begin_ == buffer_.size() && buffer_.capacity() > kKeptBufferBytes) {
+    buffer_ = std::string();
+    begin_ = 0;
+  }
   Frame frame;
   frame.status = failed_;
   if (failed_ != FrameStatus::kNeedMore || buffered_bytes() < kFrameHeaderBytes) return frame;

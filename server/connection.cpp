@@ -69,7 +69,6 @@ void Connection::take_frames() {
     const Frame frame = reader_.next();
     switch (frame.status) {
       case FrameStatus::kNeedMore:
-        frame_bytes_ = frame.announced_bytes;
         if (!reserve_memory(frame.announced_bytes)) {
           broken(ErrorCode::kResourceExhausted,
                  "the server has no memory left for a message of " +
@@ -78,7 +77,6 @@ void Connection::take_frames() {
         return;
       case FrameStatus::kFrame:
         frame_start_ = last_active_;  // of the one after it
-        frame_bytes_ = 0;
         if (!reserve_memory(frame.payload.size())) {
           broken(ErrorCode::kResourceExhausted, "the server has no memory left for this message");
           return;
@@ -116,7 +114,8 @@ void Connection::rearm_timer() {
   if (!greeted_) {
     until = started_ + limits_.hello_timeout;
   } else if (reader_.in_frame() && !input_ended_) {
-    const std::chrono::duration<double> transfer(static_cast<double>(frame_bytes_) /
+    // Time is earned by bytes that came, not by bytes announced.
+    const std::chrono::duration<double> transfer(static_cast<double>(reader_.buffered_bytes()) /
                                                  static_cast<double>(limits_.min_bytes_per_s));
     until = frame_start_ + limits_.frame_timeout +
             std::chrono::duration_cast<Clock::duration>(transfer);

@@ -100,7 +100,6 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Clock::time_point started_ = Clock::now();
   Clock::time_point last_active_ = Clock::now();
   Clock::time_point frame_start_;
-  std::size_t frame_bytes_ = 0;  // of the frame being received, once its header is there
   MemoryBudget::Lease frame_memory_;
 
   Phase phase_ = Phase::kOpen;

@@ -112,18 +112,11 @@ v1::SceneReply SceneAdmin::rollback(const v1::SceneRollbackRequest& request) con
 
 v1::SceneReply SceneAdmin::tag(const v1::SceneTagRequest& request) const {
   Store store = open_for_change();
-  // Checked first, so that a bad tag leaves none of the others behind.
+  TagChanges changes;
   for (const auto& [key, value] : request.tags()) {
-    validate_name(key, "tag");
-    if (!value.empty()) validate_tag_value(value);
+    changes[key] = value.empty() ? std::nullopt : std::optional<std::string>(value);
   }
-  for (const auto& [key, value] : request.tags()) {
-    if (value.empty()) {
-      store.untag(request.name(), key);
-    } else {
-      store.tag(request.name(), key, value);
-    }
-  }
+  store.change_tags(request.name(), changes);
   put_in_service();
   return show(request.name());
 }

@@ -1,5 +1,6 @@
 #include "server/server_state.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/base/error.hpp"
@@ -9,6 +10,19 @@ namespace landmarkdb {
 
 namespace {
 
+// The same generation of the same records. The generation alone would not do: another file put in
+// the place of the first may have counted as far.
+bool same_content(const Catalog& a, const Catalog& b) {
+  return a.generation == b.generation &&
+         std::equal(a.entries.begin(),
+                    a.entries.end(),
+                    b.entries.begin(),
+                    b.entries.end(),
+                    [](const CatalogEntry& x, const CatalogEntry& y) {
+                      return x.scene_id == y.scene_id && x.record == y.record;
+                    });
+}
+
 // What is in the database now; `previous` itself when nothing has changed since.
 std::shared_ptr<const Served> build(const std::string& db_path,
                                     const std::shared_ptr<const Served>& previous,
@@ -17,13 +31,14 @@ std::shared_ptr<const Served> build(const std::string& db_path,
   std::shared_ptr<const Catalog> catalog;
   {
     const Store store = Store::open_read_only(db_path);
-    if (previous && previous->damaged.empty() && previous->generation == store.generation()) {
-      return previous;
-    }
     catalog = store.load_catalog(
         context,
         [&](const DamagedScene& scene) { served->damaged.push_back(scene); },
         previous ? &previous->localizer->catalog() : nullptr);
+  }
+  if (previous && previous->damaged.empty() && served->damaged.empty() &&
+      same_content(*catalog, previous->localizer->catalog())) {
+    return previous;
   }
   served->localizer = std::make_shared<const Localizer>(catalog, context);
   served->generation = catalog->generation;

@@ -103,6 +103,8 @@ SceneRecord describe_scene(std::string name,
   if (units_look_wrong(scale, options.kind)) record.warnings.emplace_back("units_suspect");
   record.options = feature_options_of(scale, options);
 
+  context.report("prepare", 0, 1);
+  context.report("prepare", 0, 1);
   record.prepared = prepare_cloud(merged.cloud,
                                   merged.counts,
                                   {record.options.voxel_m, record.options.normal_radius_m},

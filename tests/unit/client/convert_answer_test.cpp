@@ -116,6 +116,7 @@ TEST(SceneInfoFromProto, ReadsStateTagsLandmarksAndVersions) {
   EXPECT_EQ(scene.options.keypoints, KeypointMethod::kNarf);
   EXPECT_EQ(scene.versions.at(0).version, 3);
   EXPECT_FALSE(scene.up);
+  EXPECT_FALSE(scene.min_m);
 }
 
 TEST(ErrorFromProto, KeepsKnownCodesAndMakesTheOthersUnknown) {

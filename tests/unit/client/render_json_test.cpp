@@ -68,7 +68,14 @@ TEST(QueryJson, HasTheDocumentedKeysInTheDocumentedOrder) {
       keys(json["hypotheses"][0]["correspondences"]),
       ElementsAre("putative", "after_ratio", "after_slope", "after_consistency", "inliers"));
   EXPECT_THAT(keys(json["hypotheses"][0]["fit"]),
-              ElementsAre("overlap", "rmse_m", "free_space_violation", "margin", "observability"));
+              ElementsAre("overlap",
+                          "rmse_m",
+                          "free_space_violation",
+                          "margin",
+                          "observability",
+                          "explained",
+                          "coverage",
+                          "quality"));
   EXPECT_THAT(
       keys(json["query"]),
       ElementsAre("points", "points_used", "invalid", "keypoints", "density_ratio", "seed"));

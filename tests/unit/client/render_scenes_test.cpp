@@ -17,7 +17,11 @@ SceneInfo lobby() {
   scene.tags = {{"floor", "2"}};
   scene.landmarks = {{.name = "desk", .max_m = {1.0, 2.0, 3.0}}};
   scene.sources = {"lobby.ply"};
-  scene.versions = {{.version = 2, .created = "2024-05-01T00:00:00Z", .active = true}};
+  SceneVersion version;
+  version.version = 2;
+  version.created = "2024-05-01T00:00:00Z";
+  version.active = true;
+  scene.versions = {version};
   return scene;
 }
 
@@ -56,6 +60,19 @@ TEST(ScenesText, IsATableOrSaysThatThereIsNothing) {
 TEST(SceneText, ShowsVersionsLandmarksAndTags) {
   EXPECT_THAT(scene_text(lobby()),
               AllOf(HasSubstr("floor=2"), HasSubstr("desk"), HasSubstr("2024-05-01")));
+}
+
+TEST(SceneJson, ShowsBoundsAndDamageWhereTheyAreKnown) {
+  SceneInfo scene = lobby();
+  EXPECT_FALSE(scene_json(scene).contains("min_m"));
+  scene.min_m = Eigen::Vector3d(-1, 0, 0);
+  scene.max_m = Eigen::Vector3d(4, 5, 6);
+  scene.versions[0].damage = "digest of points";
+  const nlohmann::ordered_json json = scene_json(scene);
+  EXPECT_EQ(json["min_m"][0], -1.0);
+  EXPECT_EQ(json["versions"][0]["damage"], "digest of points");
+  EXPECT_THAT(scene_text(scene),
+              AllOf(HasSubstr("-1, 0, 0"), HasSubstr("active, damaged: digest")));
 }
 
 TEST(ScenesJson, WrapsTheListInAnObject) {
