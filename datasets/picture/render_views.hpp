@@ -16,7 +16,7 @@ enum class Layout { kBeside, kStacked };  // the side view right of the top view
 struct ViewsOptions {
   int width_px = 1600;  // 400..8000; the height follows from the place
   Layout layout = Layout::kBeside;
-  std::string title = {};                  // "lobby-1: 4,097 points found ..."
+  std::string title = {};             // "lobby-1: 4,097 points found ..."
   std::string place_label = "place";  // in the legend
   std::string query_label = "query";
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  // scene frame

@@ -429,26 +429,6 @@ TEST(Localizer, AnswersOrDeclinesThePapersWayButIsNeverWrong) {
   }
 }
 
-TEST(Localizer, FindsAShiftedCopyThePapersWay) {
-  // Shifted by whole voxels of a power of two: the descriptors are the same but for rounding, so
-  // the ratio keeps its pairs and all slopes agree.
-  const SyntheticScene& room = lobby().scene;
-  IndexOptions index;
-  index.voxel_m = 0.0625;
-  const auto database = localizer_of({describe("room", room.cloud, index)});
-  Eigen::Isometry3d T_sensor_room = Eigen::Isometry3d::Identity();
-  T_sensor_room.translation() = Eigen::Vector3d(2.0, -1.0, 0.5);
-  QueryOptions options;
-  options.profile = Profile::kPaper;
-  const QueryResult answer = database->query(moved(room.cloud, T_sensor_room), options, {});
-  EXPECT_EQ(answer.status, QueryStatus::kLocalized) << answer.reason;
-  ASSERT_FALSE(answer.hypotheses.empty());
-  const Hypothesis& best = answer.hypotheses[0];
-  EXPECT_THAT(best.T_scene_sensor, PoseNear(T_sensor_room.inverse(), 0.01, 0.005));
-  EXPECT_GT(best.counts.after_ratio, best.counts.putative / 2);
-  EXPECT_GT(best.counts.inliers, 50U);
-}
-
 TEST(Localizer, NamesTheLandmarkThatHoldsTheInliers) {
   CatalogEntry entry = lobby().localizer->catalog().entries[0];
   const Eigen::Vector3d room = lobby().scene.room_m;

@@ -31,16 +31,6 @@ TEST(ViewCache, MakesEachViewOnceAndKeepsItWhereItIs) {
   EXPECT_EQ(views.keypoints(), fine.descriptors.size());
 }
 
-TEST(ViewCache, IsEmptyAtAResolutionThatSwallowsTheCloud) {
-  const CleanQuery query = clean_query(testing::frame_in(testing::small_room(2), 1).cloud);
-  const RunContext context;
-  StageTimings timings;
-  ViewCache views(query, 1, context, timings);
-  EXPECT_EQ(views.at(options_at(100.0)).descriptors.size(), 0U);
-  EXPECT_EQ(views.at(options_at(100.0)).prepared.size(), 0U);
-  EXPECT_GT(views.at(options_at(0.05)).descriptors.size(), 0U) << "another resolution suits it";
-}
-
 TEST(GravityOf, NeedsBothSidesToKnowWhichWayIsUp) {
   SceneRecord record;
   QueryOptions options;
