@@ -104,7 +104,6 @@ SceneRecord describe_scene(std::string name,
   record.options = feature_options_of(scale, options);
 
   context.report("prepare", 0, 1);
-  context.report("prepare", 0, 1);
   record.prepared = prepare_cloud(merged.cloud,
                                   merged.counts,
                                   {record.options.voxel_m, record.options.normal_radius_m},
