@@ -62,7 +62,7 @@ def run_blocks(page):
 class Documents(unittest.TestCase):
     def test_tested_blocks_run_and_print_what_the_page_says(self):
         tested = [page for page in pages() if COMMANDS.search(page.read_text(encoding="utf-8"))]
-        self.assertIn(ROOT / "README.md", tested)
+        self.assertTrue(tested)
         for page in tested:
             with self.subTest(page=page.name):
                 status, printed, expected = run_blocks(page)
