@@ -28,11 +28,13 @@ struct ManyArguments {
 
 // The i-th place: types in turn, sizes drawn; some are twins of the one before of their type.
 PlaceOptions nth_place(const ManyArguments& arguments, std::size_t i) {
-  PlaceOptions options = place_options_of(arguments.set);
+  const bool any = arguments.set.type == "any";
   const std::size_t types = all_place_types().size();
-  options.seed = arguments.set.seed + i;
-  if (arguments.set.type == "any") options.type = all_place_types()[i % types];
-  const std::size_t step = arguments.set.type == "any" ? types : 1;
+  SetArguments set = arguments.set;
+  if (any) set.type = place_type_name(all_place_types()[i % types]);
+  PlaceOptions options = place_options_of(set);
+  options.seed = set.seed + i;
+  const std::size_t step = any ? types : 1;
   Random random(arguments.set.seed * 1'000'003 + i);
   if (i >= step && random.uniform() < arguments.look_alikes) {
     options.seed -= step;

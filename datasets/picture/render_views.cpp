@@ -92,7 +92,11 @@ Drawing lay_out(const PointCloud& place,
   Drawing drawing;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  // T_drawing_scene
   T.linear() = rotation_between(up, Eigen::Vector3d::UnitZ());
-  double turn = straighten_rad(carried(place, T));
+  const std::vector<Eigen::Vector3f> upright = carried(place, T);
+  if (upright.empty()) {
+    throw Error(ErrorCode::kInvalidArgument, "the place has no finite points to draw");
+  }
+  double turn = straighten_rad(upright);
   const Eigen::Vector3d forward = T.linear() * T_scene_sensor.linear().col(2);
   // The side view looks the way the camera does, so that what it saw lies behind it.
   const double into = std::sin(turn) * forward.x() + std::cos(turn) * forward.y();
@@ -100,9 +104,6 @@ Drawing lay_out(const PointCloud& place,
   T = Eigen::Isometry3d(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ())) * T;
   drawing.place = carried(place, T);
   drop_strays(drawing.place);
-  if (drawing.place.empty()) {
-    throw Error(ErrorCode::kInvalidArgument, "the place has no finite points to draw");
-  }
   drawing.T_drawing_sensor = T * T_scene_sensor;
   drawing.query = carried(query, drawing.T_drawing_sensor);
   drawing.box = inner_box(drawing.place);

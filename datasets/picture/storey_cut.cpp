@@ -46,6 +46,7 @@ StoreyCut find_storey(std::span<const Eigen::Vector3f> points, const Eigen::Vect
 double straighten_rad(std::span<const Eigen::Vector3f> points) {
   constexpr std::size_t kSample = 20'000;
   constexpr int kAngles = 180;
+  if (points.empty()) return 0.0;
   const std::size_t step = std::max<std::size_t>(1, points.size() / kSample);
   double best_rad = 0.0;
   double best_area = -1.0;

@@ -370,6 +370,9 @@ TEST(Localizer, RefusesOptionsThatCannotBe) {
     EXPECT_EQ(code_of(options), ErrorCode::kInvalidArgument);
   }
   options = {};
+  options.filters = {Filter::kRatio};  // the robust profile uses none
+  EXPECT_EQ(code_of(options), ErrorCode::kInvalidArgument);
+  options = {};
   options.estimate_scale = true;  // the robust profile takes both clouds as metric
   EXPECT_EQ(code_of(options), ErrorCode::kInvalidArgument);
   options = {};
@@ -426,6 +429,32 @@ TEST(Localizer, AnswersOrDeclinesThePapersWayButIsNeverWrong) {
     const Frame stranger = frame_in(small_room(3), seed);
     EXPECT_NE(lobby().localizer->query(stranger.cloud, options, {}).status,
               QueryStatus::kLocalized);
+  }
+}
+
+TEST(Localizer, FindsAShiftedCopyThePapersWay) {
+  // Shifted by whole voxels of a power of two: the descriptors are the same but for rounding, so
+  // the ratio keeps its pairs and all slopes agree.
+  const SyntheticScene& room = lobby().scene;
+  IndexOptions index;
+  index.voxel_m = 0.0625;
+  const auto database = localizer_of({describe("room", room.cloud, index)});
+  Eigen::Isometry3d T_sensor_room = Eigen::Isometry3d::Identity();
+  T_sensor_room.translation() = Eigen::Vector3d(2.0, -1.0, 0.5);
+  QueryOptions options;
+  options.profile = Profile::kPaper;
+  const PointCloud cloud = moved(room.cloud, T_sensor_room);
+  for (const bool narf : {true, false}) {
+    if (!narf) options.keypoints = KeypointMethod::kStructure;  // as the entry has them
+    const QueryResult answer = database->query(cloud, options, {});
+    EXPECT_EQ(answer.status, QueryStatus::kLocalized) << answer.reason;
+    ASSERT_FALSE(answer.hypotheses.empty());
+    const Hypothesis& best = answer.hypotheses[0];
+    EXPECT_THAT(best.T_scene_sensor, PoseNear(T_sensor_room.inverse(), 0.01, 0.005));
+    EXPECT_LE(best.counts.after_ratio, best.counts.putative);
+    if (narf) continue;
+    EXPECT_GT(best.counts.after_ratio, best.counts.putative / 2);
+    EXPECT_GT(best.counts.inliers, 50U);
   }
 }
 

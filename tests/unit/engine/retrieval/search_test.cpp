@@ -31,6 +31,28 @@ TEST(ViewCache, MakesEachViewOnceAndKeepsItWhereItIs) {
   EXPECT_EQ(views.keypoints(), fine.descriptors.size());
 }
 
+TEST(ViewCache, IsEmptyWhereTheCloudCannotBeDescribed) {
+  PointCloud line;
+  for (int i = 0; i < 500; ++i) line.points.emplace_back(0.01F * static_cast<float>(i), 1.0F, 1.0F);
+  const CleanQuery query = clean_query(line);
+  const RunContext context;
+  StageTimings timings;
+  ViewCache views(query, 1, context, timings);
+  for (const double voxel_m : {0.05, 100.0}) {
+    EXPECT_EQ(views.at(options_at(voxel_m)).descriptors.size(), 0U);
+    EXPECT_EQ(views.at(options_at(voxel_m)).prepared.size(), 0U);
+  }
+}
+
+TEST(ViewCache, HasNothingAtAResolutionThatSwallowsTheCloudAndAllAtAnother) {
+  const CleanQuery query = clean_query(testing::frame_in(testing::small_room(2), 1).cloud);
+  const RunContext context;
+  StageTimings timings;
+  ViewCache views(query, 1, context, timings);
+  EXPECT_EQ(views.at(options_at(100.0)).descriptors.size(), 0U);
+  EXPECT_GT(views.at(options_at(0.05)).descriptors.size(), 0U);
+}
+
 TEST(GravityOf, NeedsBothSidesToKnowWhichWayIsUp) {
   SceneRecord record;
   QueryOptions options;
