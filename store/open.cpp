@@ -1,8 +1,10 @@
 #include "store/open.hpp"
 
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -98,8 +100,25 @@ void require_version(const Database& database) {
   }
 }
 
+// Where two connections make one new file a WAL database at once, SQLite tells one of them "busy"
+// without waiting, as waiting could deadlock: so the wait is here.
+void switch_to_wal(const Database& database, std::chrono::milliseconds patience) {
+  constexpr std::chrono::milliseconds kPause{5};
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (true) {
+    try {
+      database.execute("PRAGMA journal_mode = WAL");
+      return;
+    } catch (const Error& error) {
+      const bool late = std::chrono::steady_clock::now() + kPause > deadline;
+      if (error.code() != ErrorCode::kUnavailable || late) throw;
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
 void prepare_for_writing(const Database& database, const StoreOptions& options) {
-  database.execute("PRAGMA journal_mode = WAL");
+  switch_to_wal(database, options.busy_timeout);
   database.execute("PRAGMA synchronous = FULL");
   database.execute("PRAGMA journal_size_limit = " + std::to_string(kWalLimitBytes));
   if (options.max_bytes > 0) {

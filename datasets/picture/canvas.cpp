@@ -1,8 +1,11 @@
 #include "datasets/picture/canvas.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <memory>
 #include <string>
 
 #include <png.h>
@@ -22,6 +25,11 @@ std::vector<png_byte> bytes_of(const Canvas& canvas) {
     }
   }
   return bytes;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+  throw Error(ErrorCode::kResourceExhausted,
+              path.string() + ": the picture cannot be written: " + why);
 }
 
 }  // namespace
@@ -81,10 +89,15 @@ void write_png(const std::filesystem::path& path, const Canvas& canvas) {
   image.height = static_cast<png_uint_32>(canvas.height);
   image.format = PNG_FORMAT_RGB;
   const std::vector<png_byte> bytes = bytes_of(canvas);
-  if (png_image_write_to_file(&image, path.c_str(), 0, bytes.data(), 0, nullptr) == 0) {
-    throw Error(ErrorCode::kResourceExhausted,
-                path.string() + ": the picture cannot be written: " + image.message);
+  // Not png_image_write_to_file: where that fails it removes what it was told to write to, a device
+  // of the system too.
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"),
+                                                             &std::fclose);
+  if (!file) refuse(path, std::strerror(errno));
+  if (png_image_write_to_stdio(&image, file.get(), 0, bytes.data(), 0, nullptr) == 0) {
+    refuse(path, static_cast<const char*>(image.message));
   }
+  if (std::fflush(file.get()) != 0) refuse(path, std::strerror(errno));
 }
 
 }  // namespace landmarkdb::datasets

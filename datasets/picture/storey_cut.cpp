@@ -14,8 +14,14 @@ namespace {
 constexpr float kBin_m = 0.05F;
 constexpr float kReach_m = 8.0F;  // points further off in plan may belong to another room
 
-// The height in (low, high) around which most points near the sensor lie.
-float densest(std::span<const Eigen::Vector3f> points,
+constexpr double kAlmost = 0.7;  // of the densest height: as likely a floor or a ceiling
+
+enum class Of { kFloor, kCeiling };
+
+// The height in (low, high) around which most points near the sensor lie; of heights about as dense
+// (the ceiling of the storey below, the floor of the one above) the one next to the sensor.
+float densest(Of side,
+              std::span<const Eigen::Vector3f> points,
               const Eigen::Vector3f& sensor,
               float low,
               float high,
@@ -26,9 +32,13 @@ float densest(std::span<const Eigen::Vector3f> points,
     if ((p - sensor).head<2>().norm() > kReach_m) continue;
     ++bins[static_cast<std::size_t>((p.z() - low) / kBin_m)];
   }
-  const auto most = std::max_element(bins.begin(), bins.end());
-  if (*most == 0) return otherwise;
-  return low + kBin_m * (static_cast<float>(most - bins.begin()) + 0.5F);
+  const int most = *std::max_element(bins.begin(), bins.end());
+  if (most == 0) return otherwise;
+  const auto dense = [&](int count) { return count >= kAlmost * most; };
+  const auto at = side == Of::kCeiling
+                      ? std::find_if(bins.begin(), bins.end(), dense) - bins.begin()
+                      : bins.rend() - std::find_if(bins.rbegin(), bins.rend(), dense) - 1;
+  return low + kBin_m * (static_cast<float>(at) + 0.5F);
 }
 
 }  // namespace
@@ -37,9 +47,9 @@ StoreyCut find_storey(std::span<const Eigen::Vector3f> points, const Eigen::Vect
   constexpr float kMargin_m = 0.15F;
   constexpr float kPlanHeight_m = 2.3F;  // a cut above heads and doors, below most lamps
   const float floor =
-      densest(points, sensor, sensor.z() - 2.6F, sensor.z() - 0.3F, sensor.z() - 1.5F);
-  const float ceiling =
-      densest(points, sensor, floor + 2.0F, floor + 3.6F, floor + kPlanHeight_m + kMargin_m);
+      densest(Of::kFloor, points, sensor, sensor.z() - 2.6F, sensor.z() - 0.3F, sensor.z() - 1.5F);
+  const float ceiling = densest(
+      Of::kCeiling, points, sensor, floor + 2.0F, floor + 3.6F, floor + kPlanHeight_m + kMargin_m);
   return {floor - kMargin_m, std::min(floor + kPlanHeight_m, ceiling - kMargin_m)};
 }
 
