@@ -25,6 +25,7 @@ v1::Landmark to_proto(const Landmark& landmark);
 // Throw Error{kInternal} where the server's answer is not what the protocol promises (an array of
 // another length, a status without a number).
 QueryResult from_proto(const v1::QueryResult& result);
+Explanation from_proto(const v1::Explanation& explanation);
 SceneInfo from_proto(const v1::SceneInfo& scene);
 Stats from_proto(const v1::StatsReply& stats);
 Health from_proto(const v1::HealthReply& health);

@@ -144,6 +144,7 @@ QueryResult from_proto(const v1::QueryResult& result) {
   for (const v1::Correspondence& pair : result.correspondences()) {
     out.correspondences.push_back(correspondence(pair));
   }
+  if (result.has_explanation()) out.explanation = from_proto(result.explanation());
   out.timings = timings(result.timing());
   return out;
 }

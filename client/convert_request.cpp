@@ -125,6 +125,7 @@ v1::QueryOptions to_proto(const QueryOptions& options) {
   out.set_estimate_scale(options.estimate_scale);
   out.set_seed(options.seed);
   out.set_want_correspondences(options.want_correspondences);
+  out.set_explain(options.explain);
   return out;
 }
 

@@ -27,6 +27,7 @@ const std::vector<cli::Example> kExamples = {
      "the same for a depth image, for scripts"},
     {"landmarkdb query scan.pcd --scene lobby --up 0,0,1 --correspondences pairs.csv",
      "one scene only, gravity known, every pair written down"},
+    {"landmarkdb query view.ply --explain", "which step lost it, and what would have helped"},
 };
 
 void add_input_options(CLI::App& app, QueryArguments& a) {
@@ -63,6 +64,10 @@ void add_answer_options(CLI::App& app, QueryArguments& a) {
       ->type_name("M");
   app.add_option("--correspondences", a.correspondences, "Write every putative pair as CSV")
       ->type_name("FILE");
+  app.add_flag("--explain",
+               a.explain,
+               "Say what each step left, what spoke for and against each candidate, and what would "
+               "have changed the answer");
 }
 
 void add_method_options(CLI::App& app, QueryArguments& a) {
@@ -129,6 +134,7 @@ QueryOptions query_options(const QueryArguments& a) {
   options.estimate_scale = a.scale;
   options.seed = a.seed;
   options.want_correspondences = !a.correspondences.empty();
+  options.explain = a.explain;
   return options;
 }
 

@@ -30,6 +30,7 @@ struct QueryArguments {
   bool scale = false;
   std::uint64_t seed = 1;
   std::string correspondences;
+  bool explain = false;
 };
 
 // The engine's options. Throws cli::UsageError and, for the prior's file, Error.

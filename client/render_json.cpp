@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "client/render_explanation.hpp"
 #include "engine/geometry/pose.hpp"
 
 namespace landmarkdb::client {
@@ -99,6 +100,7 @@ nlohmann::ordered_json query_json(const QueryResult& result) {
                   {"seed", result.seed}};
   out["warnings"] = result.warnings;
   out["timing_ms"] = timings_json(result.timings);
+  if (result.explanation) out["explain"] = explanation_json(*result.explanation);
   return out;
 }
 

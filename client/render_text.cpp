@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/table.hpp"
+#include "client/render_explanation.hpp"
 #include "client/render_json.hpp"
 #include "engine/geometry/pose.hpp"
 
@@ -71,6 +72,7 @@ std::string_view explain(std::string_view warning) {
       {"low_overlap", "only a part of the cloud lies on the scene"},
       {"planar_scene", "mostly one plane: the pose can slide along it"},
       {"density_mismatch", "much coarser or finer than the stored scene"},
+      {"correspondences_cut", "too many pairs to send; each keypoint's farthest are left out"},
       {"gravity_disagrees", "the pose tilts the scene against --up"},
       {"normals_unoriented", "no viewpoint known; normals may point either way"},
   };
@@ -138,7 +140,9 @@ std::string query_text(const QueryResult& result) {
     out += print("  %zu. %s\n", i + 1, place_text(h).c_str());
     out += localized ? "  pose        " + pose_text(h.T_scene_sensor) + "\n" : details_text(h);
   }
-  return out + footer_text(result);
+  out += footer_text(result);
+  if (result.explanation) out += explanation_text(*result.explanation);
+  return out;
 }
 
 }  // namespace landmarkdb::client

@@ -8,7 +8,7 @@ namespace landmarkdb::client {
 
 // The answer in a few lines for people: verdict, place, pose (metres; roll, pitch, yaw in degrees),
 // chain, counts, fit, timings, warnings. All poses when ambiguous; the reason and a hint when not
-// found. Ends with a newline.
+// found; the explanation, where there is one. Ends with a newline.
 std::string query_text(const QueryResult& result);
 
 }  // namespace landmarkdb::client

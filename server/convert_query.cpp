@@ -7,6 +7,7 @@
 #include "engine/base/error.hpp"
 #include "engine/geometry/pose.hpp"
 #include "server/convert_cloud.hpp"
+#include "server/convert_explanation.hpp"
 
 namespace landmarkdb {
 
@@ -262,6 +263,7 @@ QueryOptions from_proto(const v1::QueryOptions& message) {
   options.estimate_scale = message.estimate_scale();
   if (message.has_seed()) options.seed = message.seed();
   options.want_correspondences = message.want_correspondences();
+  options.explain = message.explain();
   return options;
 }
 
@@ -289,6 +291,7 @@ v1::QueryResult to_proto(const QueryResult& result) {
     pair.set_distance(record.distance);
     pair.set_dropped_by(record.dropped_by);
   }
+  if (result.explanation) *message.mutable_explanation() = to_proto(*result.explanation);
   return message;
 }
 

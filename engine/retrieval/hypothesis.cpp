@@ -6,8 +6,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "engine/retrieval/chain.hpp"
-
 namespace landmarkdb {
 
 namespace {
@@ -20,17 +18,6 @@ Eigen::Matrix4d translation(const Eigen::Vector3d& t) {
   Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
   T.topRightCorner<3, 1>() = t;
   return T;
-}
-
-ChainResult chain_of(const Judged& judged, const SearchInput& input, const EntryMatches& matches) {
-  const Entry& entry = input.entries[matches.entry];
-  return make_chain({.query = matches.view->descriptors,
-                     .entry = entry.record().descriptors,
-                     .correspondences = matches.putative,
-                     .proposer = judged.pose.correspondence,
-                     .T_entry_sensor = judged.pose.T_entry_sensor,
-                     .inlier_m = kInlierCells * entry.grid.cell_m(),
-                     .estimate_scale = input.options.estimate_scale});
 }
 
 // Inverse of the information, freedom by freedom: one that the surface does not fix gets a large
@@ -111,6 +98,17 @@ CorrespondenceCounts counts_of(const EntryMatches& matches, std::size_t inliers)
 
 }  // namespace
 
+ChainResult chain_of(const Judged& judged, const SearchInput& input, const EntryMatches& matches) {
+  const Entry& entry = input.entries[matches.entry];
+  return make_chain({.query = matches.view->descriptors,
+                     .entry = entry.record().descriptors,
+                     .correspondences = matches.putative,
+                     .proposer = judged.pose.correspondence,
+                     .T_entry_sensor = judged.pose.T_entry_sensor,
+                     .inlier_m = kInlierCells * entry.grid.cell_m(),
+                     .estimate_scale = input.options.estimate_scale});
+}
+
 Hypothesis make_hypothesis(const Judged& judged,
                            const SearchInput& input,
                            const SearchResult& result) {
@@ -145,30 +143,6 @@ Hypothesis make_hypothesis(const Judged& judged,
                     .observability = pose.evidence.observability};
   hypothesis.covariance = covariance_of(pose, entry, -input.query.cloud.origin);
   return hypothesis;
-}
-
-std::vector<CorrespondenceRecord> list_correspondences(const Judged& judged,
-                                                       const SearchInput& input,
-                                                       const SearchResult& result) {
-  const EntryMatches& matches = result.matches[judged.pose.matches];
-  const SceneRecord& record = input.entries[judged.pose.entry].record();
-  const ChainResult made = chain_of(judged, input, matches);
-  std::vector<CorrespondenceRecord> records;
-  records.reserve(matches.putative.size());
-  for (std::uint32_t i = 0; i < matches.putative.size(); ++i) {
-    const Correspondence& pair = matches.putative[i];
-    CorrespondenceRecord row;
-    row.scene = record.name;
-    row.sensor_m =
-        matches.view->descriptors.keypoints[pair.query] + input.query.cloud.origin.cast<float>();
-    row.scene_m = record.descriptors.keypoints[pair.target].cast<double>() + record.prepared.origin;
-    row.distance = pair.distance;
-    const bool filtered = !matches.dropped_by.empty() && *matches.dropped_by[i] != '\0';
-    const bool inlier = std::binary_search(made.inliers.begin(), made.inliers.end(), i);
-    row.dropped_by = filtered ? matches.dropped_by[i] : (inlier ? "" : "pose");
-    records.push_back(std::move(row));
-  }
-  return records;
 }
 
 }  // namespace landmarkdb

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "engine/retrieval/chain.hpp"
 #include "engine/retrieval/search.hpp"
 #include "engine/retrieval/verdict.hpp"
 #include "engine/types/query.hpp"
@@ -14,9 +15,7 @@ Hypothesis make_hypothesis(const Judged& judged,
                            const SearchInput& input,
                            const SearchResult& result);
 
-// Every putative pair of the pose's entry with what became of it.
-std::vector<CorrespondenceRecord> list_correspondences(const Judged& judged,
-                                                       const SearchInput& input,
-                                                       const SearchResult& result);
+// The chain behind a judged pose, and which of its entry's pairs agree with it.
+ChainResult chain_of(const Judged& judged, const SearchInput& input, const EntryMatches& matches);
 
 }  // namespace landmarkdb

@@ -8,8 +8,11 @@
 #include "engine/base/error.hpp"
 #include "engine/cloud/resolution.hpp"
 #include "engine/retrieval/entry.hpp"
+#include "engine/retrieval/expected.hpp"
+#include "engine/retrieval/explain.hpp"
 #include "engine/retrieval/hypothesis.hpp"
 #include "engine/retrieval/level.hpp"
+#include "engine/retrieval/list_correspondences.hpp"
 #include "engine/retrieval/query_view.hpp"
 #include "engine/retrieval/search.hpp"
 #include "engine/retrieval/verdict.hpp"
@@ -94,23 +97,6 @@ std::string nothing_left(const SearchResult& search,
          ": no proposal lies on the surface of any entry";
 }
 
-// Drops the poses that contradict what the asker knows; refinement and the paper's search do not
-// look at it.
-void keep_expected(const SearchInput& input, std::vector<Assessed>& poses) {
-  const QueryOptions& options = input.options;
-  std::erase_if(poses, [&](const Assessed& pose) {
-    const SceneRecord& record = input.entries[pose.entry].record();
-    if (const std::optional<Gravity> gravity = gravity_of(options, record)) {
-      const Eigen::Vector3f up = pose.T_entry_sensor.linear().cast<float>() * gravity->up_source;
-      if (up.dot(gravity->up_target) < gravity->min_cosine) return true;
-    }
-    if (!options.prior_T_scene_sensor) return false;
-    const Eigen::Vector3d sensor =
-        pose.T_entry_sensor * Eigen::Vector3d(-input.query.cloud.origin) + record.prepared.origin;
-    return (sensor - options.prior_T_scene_sensor->translation()).norm() > options.prior_radius_m;
-  });
-}
-
 void add_warnings(const CleanQuery& query,
                   const Verdict& verdict,
                   std::span<const Entry> entries,
@@ -139,8 +125,10 @@ void fill_hypotheses(const SearchInput& input,
     if (answer.hypotheses.size() >= input.options.top) break;
     answer.hypotheses.push_back(make_hypothesis(judged, input, search));
   }
-  if (input.options.want_correspondences && !verdict.judged.empty()) {
-    answer.correspondences = list_correspondences(verdict.judged[0], input, search);
+  if (input.options.want_correspondences) {
+    CorrespondenceList list = list_correspondences(verdict, input, search);
+    answer.correspondences = std::move(list.records);
+    if (list.cut) answer.warnings.emplace_back("correspondences_cut");
   }
 }
 
@@ -184,10 +172,12 @@ QueryResult Localizer::query(const PointCloud& cloud,
   if (query.cloud.size() < kFewest) {
     answer.reason = "preprocess: " + std::to_string(query.cloud.size()) + " usable points of " +
                     std::to_string(query.counts.points) + ", want at least 4";
+    if (options.explain) answer.explanation = explain_unsearched(answer);
     return answer;
   }
   if (state_->entries.empty()) {
     answer.reason = "match: the database has no scenes";
+    if (options.explain) answer.explanation = explain_unsearched(answer);
     return answer;
   }
 
@@ -202,17 +192,27 @@ QueryResult Localizer::query(const PointCloud& cloud,
     search_objects(input, search);
   }
   answer.query.keypoints = views.keypoints();
-  keep_expected(input, search.poses);
+  const std::vector<Assessed> dropped = keep_expected(input, search.poses);
 
   VerdictOptions verdict_options;
   verdict_options.min_confidence = options.min_confidence;
   const Verdict verdict = judge(search.poses, state_->entries, query.centre, verdict_options);
   answer.status = verdict.status;
   if (answer.status == QueryStatus::kNotFound) {
-    answer.reason = search.poses.empty() ? nothing_left(search, query, views) : verdict.reason;
+    if (!search.poses.empty()) {
+      answer.reason = verdict.reason;
+    } else if (!dropped.empty()) {
+      answer.reason = "verify: all " + std::to_string(dropped.size()) +
+                      " poses contradict the up direction or the prior";
+    } else {
+      answer.reason = nothing_left(search, query, views);
+    }
   }
   add_warnings(query, verdict, state_->entries, answer);
   fill_hypotheses(input, search, verdict, answer);
+  if (options.explain) {
+    answer.explanation = explain({input, search, dropped, verdict, verdict_options, answer});
+  }
   return answer;
 }
 

@@ -131,6 +131,17 @@ std::optional<Gravity> gravity_of(const QueryOptions& options, const SceneRecord
   return gravity;
 }
 
+std::optional<PositionPrior> prior_of(const SearchInput& input, const SceneRecord& record) {
+  const QueryOptions& options = input.options;
+  if (!options.prior_T_scene_sensor) return std::nullopt;
+  PositionPrior prior;
+  prior.centre =
+      (options.prior_T_scene_sensor->translation() - record.prepared.origin).cast<float>();
+  prior.sensor_source = -input.query.cloud.origin.cast<float>();
+  prior.radius_m = static_cast<float>(options.prior_radius_m);
+  return prior;
+}
+
 void assess_candidates(const SearchInput& input,
                        std::vector<Candidate> candidates,
                        const MeetingOf& meeting_of,
@@ -141,6 +152,7 @@ void assess_candidates(const SearchInput& input,
   candidates = within_quota(candidates, kCoarse, [&](const Candidate& candidate) {
     return result.matches[candidate.matches].entry;
   });
+  for (const Candidate& candidate : candidates) ++result.matches[candidate.matches].poses.refined;
   std::vector<Assessed> assessed;
   {
     const StageTimer timer(input.timings.icp);
@@ -157,6 +169,7 @@ void assess_candidates(const SearchInput& input,
                   best[i]);
     }
   });
+  for (const Assessed& pose : best) ++result.matches[pose.matches].poses.verified;
   result.poses.insert(result.poses.end(), best.begin(), best.end());
 }
 

@@ -59,6 +59,14 @@ struct SearchInput {
   const RunContext& context;
 };
 
+// How many poses of one entry reached each step.
+struct PoseCounts {
+  std::uint64_t proposals = 0;  // tested on the surface
+  std::uint64_t survivors = 0;  // distinct ones that did well there
+  std::uint64_t refined = 0;    // of those, within the quota of all entries
+  std::uint64_t verified = 0;   // refined with all points and held against free space
+};
+
 // The putative pairs of the query with one entry, and what each filter left of them.
 struct EntryMatches {
   std::size_t entry = 0;
@@ -66,12 +74,16 @@ struct EntryMatches {
   std::vector<Correspondence> putative;  // `query`: keypoint of the view, `target`: of the entry
   std::vector<const char*> dropped_by;   // empty, or one a putative pair; "" where it was kept
   CorrespondenceCounts counts;
+  PoseCounts poses;
+  // The paper's search: the ratio that would leave four pairs; 0 where none does.
+  double ratio_for_four = 0.0;
 };
 
 struct SearchResult {
   std::vector<EntryMatches> matches;
-  std::vector<Assessed> poses;  // finely assessed, in no order
-  std::string lost_at;          // the stage that had nothing left, when `poses` is empty
+  std::vector<Assessed> poses;    // finely assessed, in no order
+  std::string lost_at;            // the stage that had nothing left, when `poses` is empty
+  double coarsest_voxel_m = 0.0;  // of the entries that the query was too thin for; 0: none
 };
 
 // The robust profile: every match proposes a pose through the two local reference frames, every
@@ -94,6 +106,9 @@ std::unique_ptr<DescriptorIndex> make_index(std::span<const float> values,
 
 // The gravity that query and entry agree to use: nullopt where one of them does not know it.
 std::optional<Gravity> gravity_of(const QueryOptions& options, const SceneRecord& record);
+
+// Where the asker expects the sensor, in the coordinates of the record's points.
+std::optional<PositionPrior> prior_of(const SearchInput& input, const SceneRecord& record);
 
 // Refines the ranked candidates of all entries in two passes and appends the best to
 // `result.poses`.

@@ -20,7 +20,9 @@ constexpr float kHopeless = 0.08F;
 // clutter.
 EntryMatches match_object(const SearchInput& input, std::size_t e, const QueryView& view) {
   const StageTimer timer(input.timings.match);
-  EntryMatches matches{.entry = e, .view = &view, .putative = {}, .dropped_by = {}, .counts = {}};
+  EntryMatches matches;
+  matches.entry = e;
+  matches.view = &view;
   const auto index = make_exact_index(view.descriptors.values, Measure::kL2);
   std::vector<DescriptorMatch> found;
   index->search(input.entries[e].record().descriptors.values, kNeighbours, found, input.context);
@@ -58,6 +60,7 @@ void search_objects(const SearchInput& input, SearchResult& result) {
     if (!entry.is_object() || !input.wanted[e]) continue;
     if (input.query.spacing_m > kMostSpacingVoxels * entry.record().options.voxel_m) {
       result.lost_at = "density";
+      result.coarsest_voxel_m = std::max(result.coarsest_voxel_m, entry.record().options.voxel_m);
       continue;
     }
     const QueryView& view = input.views.at(entry.record().options);
@@ -69,12 +72,15 @@ void search_objects(const SearchInput& input, SearchResult& result) {
     RankOptions rank;
     rank.hopeless = kHopeless;
     const std::vector<Proposal> proposals = propose_object(result.matches.back(), entry);
+    PoseCounts& counts = result.matches.back().poses;
+    counts.proposals = proposals.size();
     for (const RankedPose& ranked : rank_poses(*grid,
                                                entry.test,
                                                proposals,
                                                centre_of(entry.record().prepared),
                                                rank,
                                                input.context)) {
+      ++counts.survivors;
       candidates.push_back({result.matches.size() - 1,
                             ranked.T_target_source.inverse(),
                             ranked.score,

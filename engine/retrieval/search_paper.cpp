@@ -56,6 +56,17 @@ std::vector<Correspondence> slope_filtered(const std::vector<Correspondence>& pa
   return filter_slope(pairs, entry.keypoints, turned, {});
 }
 
+// The smallest ratio, in hundredths, that would leave the four pairs a similarity wants; 0: none.
+double ratio_for_four(std::span<const DescriptorMatch> found) {
+  constexpr int kHundredths = 100;
+  constexpr std::size_t kFewest = 4;
+  for (int ratio = 1; ratio <= kHundredths; ++ratio) {
+    const double share = static_cast<double>(ratio) / kHundredths;
+    if (filter_ratio(found, kNeighbours, share).size() >= kFewest) return share;
+  }
+  return 0.0;
+}
+
 // Nearest neighbours of the query in one entry, and the filters in the paper's order.
 std::vector<Correspondence> match_and_filter(const SearchInput& input, EntryMatches& matches) {
   const DescriptorSet& entry = input.entries[matches.entry].record().descriptors;
@@ -76,6 +87,7 @@ std::vector<Correspondence> match_and_filter(const SearchInput& input, EntryMatc
   matches.counts.putative = count(pairs);
   if (uses(input.options, Filter::kRatio)) {
     pairs = filter_ratio(found, kNeighbours, input.options.ratio);
+    if (input.options.explain) matches.ratio_for_four = ratio_for_four(found);
     mark_dropped(matches, pairs, "ratio");
   }
   matches.counts.after_ratio = count(pairs);
@@ -149,18 +161,20 @@ void search_paper(const SearchInput& input, SearchResult& result) {
     if (!input.options.keypoints) features.keypoints = KeypointMethod::kNarf;
     const QueryView& view = input.views.at(features);
     if (view.descriptors.size() == 0) continue;
-    result.matches.push_back(
-        {.entry = e, .view = &view, .putative = {}, .dropped_by = {}, .counts = {}});
-    std::vector<Correspondence> pairs = match_and_filter(input, result.matches.back());
+    EntryMatches& matches = result.matches.emplace_back();
+    matches.entry = e;
+    matches.view = &view;
+    std::vector<Correspondence> pairs = match_and_filter(input, matches);
     // A second and a third motion of the pairs that are left are the rivals the first is held
     // against.
     constexpr int kMotions = 3;
     for (int motion = 0; motion < kMotions; ++motion) {
-      const auto candidate =
-          candidate_of(input, result.matches.size() - 1, result.matches.back(), pairs);
+      const auto candidate = candidate_of(input, result.matches.size() - 1, matches, pairs);
       if (!candidate) break;
       candidates.push_back(*candidate);
-      drop_agreeing(input, result.matches.back(), *candidate, pairs);
+      ++matches.poses.proposals;
+      ++matches.poses.survivors;
+      drop_agreeing(input, matches, *candidate, pairs);
     }
   }
   if (candidates.empty()) {

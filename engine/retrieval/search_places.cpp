@@ -62,17 +62,6 @@ void match_level(const SearchInput& input,
   }
 }
 
-std::optional<PositionPrior> prior_of(const SearchInput& input, const SceneRecord& record) {
-  const QueryOptions& options = input.options;
-  if (!options.prior_T_scene_sensor) return std::nullopt;
-  PositionPrior prior;
-  prior.centre =
-      (options.prior_T_scene_sensor->translation() - record.prepared.origin).cast<float>();
-  prior.sensor_source = -input.query.cloud.origin.cast<float>();
-  prior.radius_m = static_cast<float>(options.prior_radius_m);
-  return prior;
-}
-
 void propose_and_rank(const SearchInput& input,
                       std::size_t m,
                       SearchResult& result,
@@ -86,10 +75,13 @@ void propose_and_rank(const SearchInput& input,
                           matches.view->descriptors,
                           gravity_of(input.options, entry.record()),
                           prior_of(input, entry.record()));
-  for (const RankedPose& ranked : rank_poses(
-           entry.grid, matches.view->test, proposals, input.query.centre, {}, input.context)) {
+  const std::vector<RankedPose> survivors =
+      rank_poses(entry.grid, matches.view->test, proposals, input.query.centre, {}, input.context);
+  for (const RankedPose& ranked : survivors) {
     candidates.push_back({m, ranked.T_target_source, ranked.score, ranked.correspondence});
   }
+  result.matches[m].poses.proposals = proposals.size();
+  result.matches[m].poses.survivors = survivors.size();
 }
 
 }  // namespace
@@ -105,6 +97,7 @@ void search_places(const SearchInput& input, SearchResult& result) {
     if (asked.empty()) continue;
     if (input.query.spacing_m > kMostSpacingVoxels * level.options.voxel_m) {
       result.lost_at = "density";
+      result.coarsest_voxel_m = std::max(result.coarsest_voxel_m, level.options.voxel_m);
       continue;
     }
     const QueryView& view = input.views.at(query_features(level.options, input.options));

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/base/stage_timings.hpp"
+#include "engine/types/explanation.hpp"
 #include "engine/types/features.hpp"
 
 namespace landmarkdb {
@@ -36,6 +37,7 @@ struct QueryOptions {
   bool estimate_scale = false;
   std::uint64_t seed = 1;
   bool want_correspondences = false;  // fill QueryResult::correspondences
+  bool explain = false;               // fill QueryResult::explanation
 };
 
 enum class QueryStatus { kLocalized, kAmbiguous, kNotFound };
@@ -101,6 +103,7 @@ struct QueryResult {
   std::uint64_t seed = 1;
   std::vector<std::string> warnings;
   std::vector<CorrespondenceRecord> correspondences;
+  std::optional<Explanation> explanation;
   StageTimings timings;
 };
 
