@@ -75,16 +75,56 @@ bool drop_far(const Slopes& slopes,
   return dropped;
 }
 
+bool near(const Slopes& slopes, std::size_t a, std::size_t b, double reach_rad) {
+  return !slopes[a] || !slopes[b] || std::abs(fold(*slopes[a] - *slopes[b])) <= reach_rad;
+}
+
+std::size_t near_in_both(const std::array<Slopes, 2>& slopes,
+                         std::size_t centre,
+                         double reach_rad) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < slopes[0].size(); ++i) {
+    if (near(slopes[0], centre, i, reach_rad) && near(slopes[1], centre, i, reach_rad)) ++count;
+  }
+  return count;
+}
+
+// The pairs within twice the reach of the one that has most others within reach (the first of
+// equals); all where none has both slopes.
+std::vector<bool> densest(const std::array<Slopes, 2>& slopes, double reach_rad) {
+  constexpr std::size_t kMostCentres = 1000;  // evenly picked: bounds the cost
+  const std::size_t count = slopes[0].size();
+  const std::size_t centres = std::min(count, kMostCentres);
+  std::optional<std::size_t> best;
+  std::size_t most = 0;
+  for (std::size_t c = 0; c < centres; ++c) {
+    const std::size_t centre = c * count / centres;
+    if (!slopes[0][centre] || !slopes[1][centre]) continue;
+    const std::size_t members = near_in_both(slopes, centre, reach_rad);
+    if (members <= most) continue;
+    most = members;
+    best = centre;
+  }
+  std::vector<bool> alive(count, true);
+  for (std::size_t i = 0; best && i < count; ++i) {
+    alive[i] =
+        near(slopes[0], *best, i, 2.0 * reach_rad) && near(slopes[1], *best, i, 2.0 * reach_rad);
+  }
+  return alive;
+}
+
 }  // namespace
 
 std::vector<Correspondence> filter_slope(std::span<const Correspondence> correspondences,
                                          std::span<const Eigen::Vector3f> target,
                                          std::span<const Eigen::Vector3f> query,
                                          const SlopeOptions& options) {
-  if (!(options.max_sigma > 0.0) || !(options.min_sigma_rad >= 0.0)) {
+  if (!(options.max_sigma > 0.0) || !(options.min_sigma_rad >= 0.0) ||
+      !(options.start_reach_rad > 0.0)) {
     throw Error(ErrorCode::kInvalidArgument,
                 "slope filter reaches " + std::to_string(options.max_sigma) +
                     " standard deviations of at least " + std::to_string(options.min_sigma_rad) +
+                    " rad from a start of " + std::to_string(options.start_reach_rad) +
                     " rad, want positive numbers");
   }
   std::array<Slopes, 2> slopes;  // m1, m2
@@ -99,7 +139,7 @@ std::vector<Correspondence> filter_slope(std::span<const Correspondence> corresp
     slopes[0].push_back(slope(d.y(), d.x()));
     slopes[1].push_back(slope(d.z(), d.x()));
   }
-  std::vector<bool> alive(correspondences.size(), true);
+  std::vector<bool> alive = densest(slopes, options.start_reach_rad);
   bool changed = true;
   while (changed) {  // each round but the last drops a pair, so it ends
     // Both fits are of the same pairs, so neither slope goes first.

@@ -19,6 +19,26 @@ Correspondence pair_of(std::size_t query, const DescriptorMatch& match) {
   return {static_cast<std::uint32_t>(query), match.index, match.distance};
 }
 
+// The distance of the nearest neighbour of `row` that stands apart from its first.
+float rival_distance(std::span<const DescriptorMatch> row, const RatioRivals& rivals) {
+  if (rivals.target.empty()) return row[1].distance;
+  for (const DescriptorMatch& match : row) {
+    if (match.index != DescriptorMatch::kNone && match.index >= rivals.target.size()) {
+      throw Error(ErrorCode::kInvalidArgument,
+                  "match names target " + std::to_string(match.index) + " of " +
+                      std::to_string(rivals.target.size()));
+    }
+  }
+  const Eigen::Vector3f& best = rivals.target[row[0].index];
+  for (const DescriptorMatch& match : row.subspan(1)) {
+    if (match.index == DescriptorMatch::kNone) return match.distance;  // infinite: no rival left
+    if (static_cast<double>((rivals.target[match.index] - best).norm()) > rivals.apart_m) {
+      return match.distance;
+    }
+  }
+  return row.back().distance;
+}
+
 }  // namespace
 
 std::vector<Correspondence> nearest_pairs(std::span<const DescriptorMatch> matches, std::size_t k) {
@@ -33,7 +53,8 @@ std::vector<Correspondence> nearest_pairs(std::span<const DescriptorMatch> match
 
 std::vector<Correspondence> filter_ratio(std::span<const DescriptorMatch> matches,
                                          std::size_t k,
-                                         double ratio) {
+                                         double ratio,
+                                         const RatioRivals& rivals) {
   check_rows(matches, k);
   if (k < 2 || !(ratio > 0.0 && ratio <= 1.0)) {
     throw Error(ErrorCode::kInvalidArgument,
@@ -43,10 +64,9 @@ std::vector<Correspondence> filter_ratio(std::span<const DescriptorMatch> matche
   std::vector<Correspondence> kept;
   for (std::size_t row = 0; row < matches.size() / k; ++row) {
     const DescriptorMatch& best = matches[row * k];
-    const DescriptorMatch& second = matches[row * k + 1];
     if (best.index == DescriptorMatch::kNone) continue;
-    // Without a second neighbour its distance is infinite.
-    if (static_cast<double>(best.distance) < ratio * static_cast<double>(second.distance)) {
+    const float rival = rival_distance(matches.subspan(row * k, k), rivals);
+    if (static_cast<double>(best.distance) < ratio * static_cast<double>(rival)) {
       kept.push_back(pair_of(row, best));
     }
   }

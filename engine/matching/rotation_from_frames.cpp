@@ -62,38 +62,74 @@ std::size_t support_of(const Quaternions& all, const Eigen::Vector4d& centre, do
       }));
 }
 
+struct Candidate {
+  std::size_t support = 0;
+  std::size_t index = 0;
+};
+
+// Up to kMaxCandidates proposals, evenly picked, best supported first.
+std::vector<Candidate> candidates_of(const Quaternions& all, double min_cosine) {
+  const std::size_t count = std::min(all.size(), kMaxCandidates);
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t index = i * all.size() / count;
+    candidates.push_back({support_of(all, all[index], min_cosine), index});
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.support != b.support ? a.support > b.support : a.index < b.index;
+  });
+  return candidates;
+}
+
+// A mean may agree with a straggler less than the proposal it grew from and is still the better
+// estimate, so it is taken whatever its support.
+Eigen::Vector4d refined(const Quaternions& all, Eigen::Vector4d centre, double min_cosine) {
+  for (int round = 0; round < kMaxRefinements; ++round) {
+    const Eigen::Vector4d mean = mean_of_agreeing(all, centre, min_cosine);
+    const bool settled = agree(mean, centre, kSettled);
+    centre = mean;
+    if (settled) break;
+  }
+  return centre;
+}
+
 }  // namespace
+
+std::vector<RotationVote> rotations_from_frames(std::span<const Correspondence> correspondences,
+                                                std::span<const Eigen::Matrix3f> target_frames,
+                                                std::span<const Eigen::Matrix3f> query_frames,
+                                                std::size_t most,
+                                                const RotationVoteOptions& options) {
+  const Quaternions all = proposals(correspondences, target_frames, query_frames);
+  // The inner product of two unit quaternions is the cosine of half the angle between them.
+  const double min_cosine = std::cos(options.agreement_rad / 2.0);
+  std::vector<RotationVote> votes;
+  Quaternions found;
+  const auto known = [&](const Eigen::Vector4d& q) {
+    return std::any_of(found.begin(), found.end(), [&](const Eigen::Vector4d& other) {
+      return agree(q, other, min_cosine);
+    });
+  };
+  for (const Candidate& candidate : candidates_of(all, min_cosine)) {
+    if (votes.size() >= most) break;
+    if (known(all[candidate.index])) continue;
+    const Eigen::Vector4d q = refined(all, all[candidate.index], min_cosine);
+    const std::size_t support = support_of(all, q, min_cosine);
+    if (known(q) || support < std::max<std::size_t>(options.min_support, 1)) continue;
+    found.push_back(q);
+    votes.push_back({Eigen::Quaterniond(q).normalized().toRotationMatrix(), support});
+  }
+  return votes;
+}
 
 std::optional<RotationVote> rotation_from_frames(std::span<const Correspondence> correspondences,
                                                  std::span<const Eigen::Matrix3f> target_frames,
                                                  std::span<const Eigen::Matrix3f> query_frames,
                                                  const RotationVoteOptions& options) {
-  const Quaternions all = proposals(correspondences, target_frames, query_frames);
-  if (all.empty()) return std::nullopt;
-  // The inner product of two unit quaternions is the cosine of half the angle between them.
-  const double min_cosine = std::cos(options.agreement_rad / 2.0);
-  const std::size_t candidates = std::min(all.size(), kMaxCandidates);
-  Eigen::Vector4d best = all.front();
-  std::size_t best_support = 0;
-  for (std::size_t i = 0; i < candidates; ++i) {
-    const Eigen::Vector4d& candidate = all[i * all.size() / candidates];
-    const std::size_t support = support_of(all, candidate, min_cosine);
-    if (support > best_support) {
-      best = candidate;
-      best_support = support;
-    }
-  }
-  // A mean may agree with a straggler less than the proposal it grew from and is still the better
-  // estimate, so it is taken whatever its support.
-  for (int round = 0; round < kMaxRefinements; ++round) {
-    const Eigen::Vector4d mean = mean_of_agreeing(all, best, min_cosine);
-    const bool settled = agree(mean, best, kSettled);
-    best = mean;
-    if (settled) break;
-  }
-  best_support = support_of(all, best, min_cosine);
-  if (best_support < std::max<std::size_t>(options.min_support, 1)) return std::nullopt;
-  return RotationVote{Eigen::Quaterniond(best).normalized().toRotationMatrix(), best_support};
+  const std::vector<RotationVote> votes =
+      rotations_from_frames(correspondences, target_frames, query_frames, 1, options);
+  if (votes.empty()) return std::nullopt;
+  return votes.front();
 }
 
 }  // namespace landmarkdb

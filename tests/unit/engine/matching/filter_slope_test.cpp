@@ -65,6 +65,16 @@ TEST(FilterSlope, KeepsTheRightPairsAndDropsMostOfTheWrong) {
   }
 }
 
+// A fit to all pairs would be a fit to the wrong ones, and let none of the right ones through.
+TEST(FilterSlope, FindsTheFewRightPairsAmongManyWrong) {
+  for (std::uint64_t seed = 1; seed < 20; ++seed) {
+    const Pairs pairs = make_pairs({6.0F, -3.0F, 2.0F}, 20, 380, 0.05, seed);
+    const Left left = filter(pairs, {});
+    EXPECT_GE(left.right, 18U) << seed;
+    EXPECT_LE(left.wrong, 60U) << seed;
+  }
+}
+
 // dx = 0 is a pole of the slope, and angles on either side of it are neighbours.
 TEST(FilterSlope, HasNoPole) {
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
@@ -108,6 +118,9 @@ TEST(FilterSlope, RefusesIndicesOutsideAndOptionsThatCannotBe) {
                Error);
   EXPECT_THROW(
       filter_slope(pairs.correspondences, pairs.target, pairs.query, {.min_sigma_rad = NAN}),
+      Error);
+  EXPECT_THROW(
+      filter_slope(pairs.correspondences, pairs.target, pairs.query, {.start_reach_rad = 0.0}),
       Error);
 }
 

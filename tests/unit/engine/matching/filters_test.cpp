@@ -48,6 +48,20 @@ TEST(FilterRatio, LooksAtTheSecondOfManyNeighbours) {
   EXPECT_TRUE(filter_ratio(matches, 3, 0.7).empty());
 }
 
+TEST(FilterRatio, HoldsTheNearestAgainstTheNearestThatStandsElsewhere) {
+  const std::vector<Eigen::Vector3f> target = {{0, 0, 0}, {0.1F, 0, 0}, {5, 0, 0}};
+  const std::vector<DescriptorMatch> matches = {{0, 0.5F}, {1, 0.51F}, {2, 0.9F}};
+  EXPECT_TRUE(filter_ratio(matches, 3, 0.7).empty());
+  EXPECT_THAT(queries_of(filter_ratio(matches, 3, 0.7, {target, 0.3})), ElementsAre(0));
+  EXPECT_TRUE(filter_ratio(matches, 3, 0.7, {target, 0.05}).empty());
+  // None stands apart: the last is nearer than the first rival could be.
+  EXPECT_TRUE(filter_ratio(matches, 3, 0.5, {target, 10.0}).empty());
+  EXPECT_THAT(queries_of(filter_ratio(matches, 3, 0.6, {target, 10.0})), ElementsAre(0));
+  const std::vector<DescriptorMatch> last = {{0, 0.5F}, {1, 0.51F}, {}};
+  EXPECT_THAT(queries_of(filter_ratio(last, 3, 0.7, {target, 0.3})), ElementsAre(0));
+  EXPECT_THROW(filter_ratio(matches, 3, 0.7, {std::span(target).first(2), 0.3}), Error);
+}
+
 TEST(FilterRatio, RefusesRowsAndRatiosThatCannotBe) {
   const std::vector<DescriptorMatch> matches(4);
   EXPECT_THROW(filter_ratio(matches, 1, 0.7), Error);

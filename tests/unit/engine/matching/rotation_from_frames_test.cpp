@@ -80,6 +80,33 @@ TEST(RotationFromFrames, FindsItAmongMorePairsThanCandidates) {
   EXPECT_LT(rotation_angle_rad(R.transpose() * vote->R_target_query), 0.03);
 }
 
+TEST(RotationsFromFrames, FindsEachOfThoseThatManyAgreeOnBestSupportedFirst) {
+  Random random(6);
+  const Eigen::Matrix3d first = random_rotation(random);
+  const Eigen::Matrix3d second = rotation_from_vector(Eigen::Vector3d(0, 0, M_PI)) * first;
+  Frames frames = make_frames(first, 40, 300, 0.05, random);
+  const Frames other = make_frames(second, 25, 0, 0.05, random);
+  for (std::size_t i = 0; i < other.correspondences.size(); ++i) {
+    const auto index = static_cast<std::uint32_t>(frames.query.size());
+    frames.query.push_back(other.query[i]);
+    frames.target.push_back(other.target[i]);
+    frames.correspondences.push_back({index, index, 0.0F});
+  }
+  const auto votes =
+      rotations_from_frames(frames.correspondences, frames.target, frames.query, 4, {});
+  ASSERT_EQ(votes.size(), 4U);
+  EXPECT_LT(rotation_angle_rad(first.transpose() * votes[0].R_target_query), 0.06);
+  EXPECT_LT(rotation_angle_rad(second.transpose() * votes[1].R_target_query), 0.06);
+  for (std::size_t i = 0; i < votes.size(); ++i) {
+    for (std::size_t j = i + 1; j < votes.size(); ++j) {
+      EXPECT_GT(rotation_angle_rad(votes[i].R_target_query.transpose() * votes[j].R_target_query),
+                RotationVoteOptions().agreement_rad);
+    }
+  }
+  EXPECT_TRUE(
+      rotations_from_frames(frames.correspondences, frames.target, frames.query, 0, {}).empty());
+}
+
 TEST(RotationFromFrames, SaysNothingWhereTooFewAgree) {
   Random random(4);
   const Frames one = make_frames(Eigen::Matrix3d::Identity(), 1, 0, 0.0, random);
