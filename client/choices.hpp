@@ -16,6 +16,7 @@ namespace landmarkdb::client {
 inline const std::vector<std::string> kUnitNames = {"m", "mm", "cm", "inch"};
 inline const std::vector<std::string> kProfileNames = {"robust", "paper"};
 inline const std::vector<std::string> kSearchNames = {"exact", "flann"};
+inline const std::vector<std::string> kSolverNames = {"similarity", "pnp"};
 inline const std::vector<std::string> kKindNames = {"place", "object"};
 inline const std::vector<std::string> kKeypointNames = {"uniform", "structure", "iss", "narf"};
 inline const std::vector<std::string> kMeasureNames = {

@@ -122,6 +122,7 @@ v1::QueryOptions to_proto(const QueryOptions& options) {
   out.set_search(options.search == Search::kFlann ? v1::SEARCH_FLANN : v1::SEARCH_EXACT);
   out.set_ratio(options.ratio);
   for (const Filter filter : options.filters) out.add_filters(to_proto(filter));
+  out.set_solver(options.solver == Solver::kPnp ? v1::SOLVER_PNP : v1::SOLVER_SIMILARITY);
   out.set_estimate_scale(options.estimate_scale);
   out.set_seed(options.seed);
   out.set_want_correspondences(options.want_correspondences);

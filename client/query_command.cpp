@@ -88,6 +88,9 @@ void add_method_options(CLI::App& app, QueryArguments& a) {
   app.add_option("--search", a.search, "Search for neighbours: exact, or FLANN's approximate one")
       ->check(CLI::IsMember(kSearchNames))
       ->capture_default_str();
+  app.add_option("--solver", a.solver, "Pose from the pairs' positions, or from directions alone")
+      ->check(CLI::IsMember(kSolverNames))
+      ->capture_default_str();
   app.add_flag("--scale", a.scale, "Estimate the scale too [1]");
   app.add_option("--seed", a.seed, "Same cloud and seed: same answer")
       ->type_name("N")
@@ -131,6 +134,7 @@ QueryOptions query_options(const QueryArguments& a) {
   options.search = a.search == "flann" ? Search::kFlann : Search::kExact;
   options.ratio = a.ratio;
   if (!a.filters.empty()) options.filters = filters(a.filters, "--filters");
+  options.solver = a.solver == "pnp" ? Solver::kPnp : Solver::kSimilarity;
   options.estimate_scale = a.scale;
   options.seed = a.seed;
   options.want_correspondences = !a.correspondences.empty();

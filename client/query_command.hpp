@@ -27,6 +27,7 @@ struct QueryArguments {
   double ratio = 0.7;
   std::string filters;
   std::string search = "exact";
+  std::string solver = "similarity";
   bool scale = false;
   std::uint64_t seed = 1;
   std::string correspondences;

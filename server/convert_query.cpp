@@ -76,6 +76,18 @@ Search search_from(v1::Search search) {
   }
 }
 
+Solver solver_from(v1::Solver solver) {
+  switch (solver) {
+    case v1::SOLVER_UNSPECIFIED:
+    case v1::SOLVER_SIMILARITY:
+      return Solver::kSimilarity;
+    case v1::SOLVER_PNP:
+      return Solver::kPnp;
+    default:
+      refuse("options.solver", "no solver has the number " + std::to_string(solver));
+  }
+}
+
 std::vector<Filter> filters_from(const v1::QueryOptions& options) {
   std::vector<Filter> filters;
   std::set<int> seen;
@@ -260,6 +272,7 @@ QueryOptions from_proto(const v1::QueryOptions& message) {
   options.search = search_from(message.search());
   if (message.has_ratio()) options.ratio = in_range(message.ratio(), 0.0, 1.0, "options.ratio");
   options.filters = filters_from(message);
+  options.solver = solver_from(message.solver());
   options.estimate_scale = message.estimate_scale();
   if (message.has_seed()) options.seed = message.seed();
   options.want_correspondences = message.want_correspondences();

@@ -11,6 +11,7 @@
 #include "engine/retrieval/expected.hpp"
 #include "engine/retrieval/explain.hpp"
 #include "engine/retrieval/hypothesis.hpp"
+#include "engine/retrieval/index_cache.hpp"
 #include "engine/retrieval/level.hpp"
 #include "engine/retrieval/list_correspondences.hpp"
 #include "engine/retrieval/query_view.hpp"
@@ -23,6 +24,7 @@ struct Localizer::State {
   std::shared_ptr<const Catalog> catalog;
   std::vector<Entry> entries;  // as in the catalogue
   std::vector<Level> levels;
+  mutable IndexCache indexes;  // thread-safe
 };
 
 namespace {
@@ -51,6 +53,12 @@ void check_options(const QueryOptions& options) {
   if (options.profile == Profile::kRobust && !options.filters.empty()) {
     refuse("filters",
            "filters belong to the profile paper: the robust one tests what every pair proposes");
+  }
+  if (options.profile == Profile::kRobust && options.solver != Solver::kSimilarity) {
+    refuse("solver", "the solver pnp belongs to the profile paper: the robust one solves no pairs");
+  }
+  if (options.solver == Solver::kPnp && options.estimate_scale) {
+    refuse("scale", "the solver pnp takes directions, which say nothing of scale");
   }
   if (options.profile == Profile::kRobust && options.estimate_scale) {
     refuse("scale",
@@ -182,8 +190,15 @@ QueryResult Localizer::query(const PointCloud& cloud,
   }
 
   ViewCache views(query, options.seed, context, answer.timings);
-  const SearchInput input{
-      query, options, state_->entries, state_->levels, wanted, views, answer.timings, context};
+  const SearchInput input{query,
+                          options,
+                          state_->entries,
+                          state_->levels,
+                          wanted,
+                          views,
+                          state_->indexes,
+                          answer.timings,
+                          context};
   SearchResult search;
   if (options.profile == Profile::kPaper) {
     search_paper(input, search);

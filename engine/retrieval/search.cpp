@@ -117,10 +117,18 @@ FeatureOptions query_features(FeatureOptions of_entry, const QueryOptions& optio
   return of_entry;
 }
 
-std::unique_ptr<DescriptorIndex> make_index(std::span<const float> values,
-                                            const QueryOptions& options) {
-  return options.search == Search::kFlann ? make_flann_index(values, options.measure)
-                                          : make_exact_index(values, options.measure);
+std::shared_ptr<const DescriptorIndex> index_over(const SearchInput& input,
+                                                  std::span<const float> values) {
+  const bool lasting =
+      std::any_of(input.levels.begin(),
+                  input.levels.end(),
+                  [&](const Level& level) { return level.values.data() == values.data(); }) ||
+      std::any_of(input.entries.begin(), input.entries.end(), [&](const Entry& entry) {
+        return entry.record().descriptors.values.data() == values.data();
+      });
+  const QueryOptions& options = input.options;
+  return lasting ? input.indexes.get(values, options.measure, options.search)
+                 : make_index(values, options.measure, options.search);
 }
 
 std::optional<Gravity> gravity_of(const QueryOptions& options, const SceneRecord& record) {

@@ -11,6 +11,7 @@
 #include "engine/registration/propose.hpp"
 #include "engine/retrieval/assess.hpp"
 #include "engine/retrieval/entry.hpp"
+#include "engine/retrieval/index_cache.hpp"
 #include "engine/retrieval/level.hpp"
 #include "engine/retrieval/query_view.hpp"
 #include "engine/types/correspondence.hpp"
@@ -55,6 +56,7 @@ struct SearchInput {
   std::span<const Level> levels;
   const std::vector<bool>& wanted;
   ViewCache& views;
+  IndexCache& indexes;
   StageTimings& timings;
   const RunContext& context;
 };
@@ -100,9 +102,10 @@ void search_paper(const SearchInput& input, SearchResult& result);
 // named.
 FeatureOptions query_features(FeatureOptions of_entry, const QueryOptions& options);
 
-// The index the options ask for, over rows of descriptors.
-std::unique_ptr<DescriptorIndex> make_index(std::span<const float> values,
-                                            const QueryOptions& options);
+// The index the options ask for, over rows of descriptors: kept from query to query when these are
+// an entry's or a level's own.
+std::shared_ptr<const DescriptorIndex> index_over(const SearchInput& input,
+                                                  std::span<const float> values);
 
 // The gravity that query and entry agree to use: nullopt where one of them does not know it.
 std::optional<Gravity> gravity_of(const QueryOptions& options, const SceneRecord& record);

@@ -37,9 +37,9 @@ void match_level(const SearchInput& input,
   const std::size_t k = neighbours_for(level.entries.size());
   std::vector<DescriptorMatch> found;
   // The level's own index is exact and Euclidean; another is made when it is asked for.
-  std::unique_ptr<DescriptorIndex> other;
+  std::shared_ptr<const DescriptorIndex> other;
   if (input.options.measure != Measure::kL2 || input.options.search != Search::kExact) {
-    other = make_index(level.values, input.options);
+    other = index_over(input, level.values);
   }
   (other ? *other : *level.index).search(view.descriptors.values, k, found, input.context);
   std::vector<EntryMatches> by_entry(level.entries.size());

@@ -19,6 +19,7 @@ enum class Profile { kRobust, kPaper };
 enum class Measure { kL2, kL1, kChi2, kIntersection, kCorrelation, kBhattacharyya };
 enum class Filter { kRatio, kSlope, kClique };
 enum class Search { kExact, kFlann };
+enum class Solver { kSimilarity, kPnp };
 
 // A question about one cloud. Angles in radians, lengths in metres.
 struct QueryOptions {
@@ -34,6 +35,7 @@ struct QueryOptions {
   Search search = Search::kExact;
   double ratio = 0.7;           // of the ratio filter
   std::vector<Filter> filters;  // empty: as the profile says
+  Solver solver = Solver::kSimilarity;
   bool estimate_scale = false;
   std::uint64_t seed = 1;
   bool want_correspondences = false;  // fill QueryResult::correspondences

@@ -78,6 +78,7 @@ TEST(QueryOptionsToProto, SendsEveryOption) {
   options.search = Search::kFlann;
   options.ratio = 0.0;
   options.filters = {Filter::kSlope, Filter::kRatio};
+  options.solver = Solver::kPnp;
   options.estimate_scale = true;
   options.seed = 0;
   options.want_correspondences = true;
@@ -97,6 +98,7 @@ TEST(QueryOptionsToProto, SendsEveryOption) {
   EXPECT_TRUE(out.has_ratio());
   EXPECT_EQ(out.ratio(), 0.0);
   EXPECT_THAT(out.filters(), ElementsAre(v1::FILTER_SLOPE, v1::FILTER_RATIO));
+  EXPECT_EQ(out.solver(), v1::SOLVER_PNP);
   EXPECT_TRUE(out.estimate_scale());
   EXPECT_TRUE(out.has_seed());
   EXPECT_EQ(out.seed(), 0U);

@@ -86,6 +86,7 @@ TEST_F(QueryCommandLine, ChoosesTheNestedCommandThatWasNamed) {
 TEST_F(QueryCommandLine, RefusesWhatItDoesNotKnow) {
   EXPECT_THROW(parse({"query", "view.ply", "--profil", "robust"}), CLI::ParseError);
   EXPECT_THROW(parse({"query", "view.ply", "--measure", "cosine"}), CLI::ParseError);
+  EXPECT_THROW(parse({"query", "view.ply", "--solver", "guess"}), CLI::ParseError);
   EXPECT_THROW(parse({"query", "view.ply", "--top", "0"}), CLI::ParseError);
   EXPECT_THROW(parse({"query"}), CLI::ParseError);
   EXPECT_THROW(parse({"recognize", "x.png"}), CLI::ParseError);

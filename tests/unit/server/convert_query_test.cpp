@@ -35,6 +35,7 @@ v1::QueryOptions full_options() {
   message.set_ratio(0.8);
   message.add_filters(v1::FILTER_SLOPE);
   message.add_filters(v1::FILTER_RATIO);
+  message.set_solver(v1::SOLVER_PNP);
   message.set_estimate_scale(true);
   message.set_seed(42);
   message.set_want_correspondences(true);
@@ -69,6 +70,7 @@ TEST(QueryOptionsFromProto, CarriesEveryField) {
   EXPECT_EQ(options.search, Search::kFlann);
   EXPECT_EQ(options.ratio, 0.8);
   EXPECT_THAT(options.filters, ElementsAre(Filter::kSlope, Filter::kRatio));
+  EXPECT_EQ(options.solver, Solver::kPnp);
   EXPECT_TRUE(options.estimate_scale);
   EXPECT_EQ(options.seed, 42U);
   EXPECT_TRUE(options.want_correspondences);

@@ -438,14 +438,14 @@ TEST(Localizer, FindsAShiftedCopyThePapersWay) {
   const SyntheticScene& room = lobby().scene;
   IndexOptions index;
   index.voxel_m = 0.0625;
-  const auto database = localizer_of({describe("room", room.cloud, index)});
   Eigen::Isometry3d T_sensor_room = Eigen::Isometry3d::Identity();
   T_sensor_room.translation() = Eigen::Vector3d(2.0, -1.0, 0.5);
   QueryOptions options;
   options.profile = Profile::kPaper;
   const PointCloud cloud = moved(room.cloud, T_sensor_room);
   for (const bool narf : {true, false}) {
-    if (!narf) options.keypoints = KeypointMethod::kStructure;  // as the entry has them
+    index.keypoints = narf ? KeypointMethod::kNarf : KeypointMethod::kStructure;
+    const auto database = localizer_of({describe("room", room.cloud, index)});
     const QueryResult answer = database->query(cloud, options, {});
     EXPECT_EQ(answer.status, QueryStatus::kLocalized) << answer.reason;
     ASSERT_FALSE(answer.hypotheses.empty());
@@ -456,6 +456,51 @@ TEST(Localizer, FindsAShiftedCopyThePapersWay) {
     EXPECT_GT(best.counts.after_ratio, best.counts.putative / 2);
     EXPECT_GT(best.counts.inliers, 50U);
   }
+}
+
+TEST(Localizer, FindsFramesThePapersWayWithEveryMeasureSearchSolverAndFilter) {
+  std::vector<QueryOptions> ways(1);
+  ways[0].profile = Profile::kPaper;
+  ways[0].ratio = 0.95;  // 0.7 leaves too few pairs of so small a room
+  for (const Measure measure : {Measure::kL1,
+                                Measure::kChi2,
+                                Measure::kIntersection,
+                                Measure::kCorrelation,
+                                Measure::kBhattacharyya}) {
+    ways.push_back(ways[0]);
+    ways.back().measure = measure;
+  }
+  ways.push_back(ways[0]);
+  ways.back().search = Search::kFlann;
+  ways.push_back(ways[0]);
+  ways.back().solver = Solver::kPnp;
+  ways.push_back(ways[0]);
+  ways.back().filters = {Filter::kRatio, Filter::kClique};
+  ways.push_back(ways[0]);
+  ways.back().filters = {Filter::kSlope};
+  for (std::size_t way = 0; way < ways.size(); ++way) {
+    int right = 0;
+    for (const std::uint64_t seed : {1U, 2U, 4U, 5U}) {
+      const Frame frame = frame_in(lobby().scene, seed);
+      const QueryResult answer = lobby().localizer->query(frame.cloud, ways[way], {});
+      if (answer.status != QueryStatus::kLocalized) continue;
+      ++right;
+      EXPECT_THAT(answer.hypotheses[0].T_scene_sensor, PoseNear(frame.T_scene_sensor, 0.1, 0.087))
+          << way;
+      break;
+    }
+    EXPECT_GE(right, 1) << way;
+  }
+}
+
+TEST(Localizer, RefusesASolverThatDoesNotGoWithTheRest) {
+  const Frame frame = frame_in(lobby().scene, 1);
+  QueryOptions options;
+  options.solver = Solver::kPnp;
+  EXPECT_THROW(lobby().localizer->query(frame.cloud, options, {}), Error);
+  options.profile = Profile::kPaper;
+  options.estimate_scale = true;
+  EXPECT_THROW(lobby().localizer->query(frame.cloud, options, {}), Error);
 }
 
 TEST(Localizer, NamesTheLandmarkThatHoldsTheInliers) {
