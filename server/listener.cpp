@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
+#include <thread>
 #include <type_traits>
 #include <utility>
 
@@ -11,6 +13,8 @@
 #include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -106,6 +110,45 @@ class TcpListener final : public SocketListener<tcp> {
   std::uint16_t port() const override { return acceptor_.local_endpoint().port(); }
 };
 
+// Held while the socket file of a folder is looked at and made or removed, which takes a
+// millisecond: of two servers that start at once, one sees what the other has done. The folder
+// itself is locked, so no lock file is left that somebody might remove too early. The kernel lets
+// go of it when the process ends.
+class FolderLock {
+ public:
+  // Waits for at most `patience`; held() tells whether it came.
+  FolderLock(const std::string& path, std::chrono::milliseconds patience) {
+    std::string folder = std::filesystem::path(path).parent_path().string();
+    if (folder.empty()) folder = ".";
+    fd_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd_ < 0) {
+      error_ = errno;
+      return;
+    }
+    constexpr std::chrono::milliseconds kTick{2};
+    const auto until = std::chrono::steady_clock::now() + patience;
+    while (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+      error_ = errno;
+      if (error_ != EWOULDBLOCK && error_ != EINTR) return;
+      if (std::chrono::steady_clock::now() >= until) return;
+      std::this_thread::sleep_for(kTick);
+    }
+    error_ = 0;
+  }
+  ~FolderLock() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+  bool held() const { return fd_ >= 0 && error_ == 0; }
+  int error() const { return error_; }  // an errno, where it is not held
+
+ private:
+  int fd_ = -1;
+  int error_ = 0;
+};
+
 class UnixListener final : public SocketListener<stream_protocol> {
  public:
   UnixListener(const Strand& strand, const std::string& path)
@@ -114,14 +157,19 @@ class UnixListener final : public SocketListener<stream_protocol> {
     if (::stat(path_.c_str(), &info) == 0) inode_ = info.st_ino;
   }
 
-  // The file is removed only while it is still ours.
+  // The file is removed only while it is still ours: before the socket is closed, as until then
+  // no other file gets its inode and no other server takes it for abandoned.
   void close() override {
-    SocketListener::close();
-    struct stat info {};
-    if (inode_ != 0 && ::stat(path_.c_str(), &info) == 0 && info.st_ino == inode_) {
-      ::unlink(path_.c_str());
+    constexpr std::chrono::milliseconds kPatience{200};  // a file that stays does no harm
+    if (inode_ != 0) {
+      const FolderLock lock(path_, kPatience);
+      struct stat info {};
+      if (lock.held() && ::lstat(path_.c_str(), &info) == 0 && info.st_ino == inode_) {
+        ::unlink(path_.c_str());
+      }
     }
     inode_ = 0;
+    SocketListener::close();
   }
 
   std::string address() const override { return "unix:" + path_; }
@@ -223,6 +271,13 @@ std::unique_ptr<Listener> listen_unix(const Strand& strand, const std::string& p
                 "the path of a Unix socket has " + std::to_string(path.size()) +
                     " bytes, want 1 to " + std::to_string(sizeof(sockaddr_un::sun_path) - 1),
                 "--unix");
+  }
+  constexpr std::chrono::milliseconds kPatience{2'000};  // others hold it for a millisecond
+  const FolderLock lock(path, kPatience);
+  if (!lock.held()) {
+    throw_cannot_listen("unix:" + path + " (its folder cannot be locked)",
+                        error_code(lock.error(), boost::system::system_category()),
+                        "--unix");
   }
   remove_stale_socket(strand, path);
   const mode_t before = ::umask(0177);  // 0600 from the moment the file exists

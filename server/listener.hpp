@@ -45,7 +45,8 @@ std::unique_ptr<Listener> listen_tcp(const Strand& strand,
 
 // Binds a Unix socket with permissions 0600. A socket file that nobody answers on any more is
 // replaced; one that is answered is Error{kUnavailable}; a file of another kind is left alone and
-// refused with Error{kInvalidArgument}.
+// refused with Error{kInvalidArgument}. Servers that start at once on one path exclude each other
+// by a lock on its folder: one of them gets it.
 std::unique_ptr<Listener> listen_unix(const Strand& strand, const std::string& path);
 
 }  // namespace landmarkdb

@@ -1,7 +1,9 @@
 #include "server/listener.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <thread>
+#include <vector>
 
 #include <boost/asio/ip/tcp.hpp>
 #include <gmock/gmock.h>
@@ -94,6 +96,45 @@ TEST_F(ListenerTest, LeavesASocketAloneThatIsAnswered) {
   const auto first = listen_unix(strand, path);
   EXPECT_EQ(refusal([&] { listen_unix(strand, path); }).code(), ErrorCode::kUnavailable);
   EXPECT_NO_THROW(TestClient::unix_socket(path));
+}
+
+// Two that find the same abandoned file: each might remove what the other has just made.
+TEST_F(ListenerTest, GivesAnAbandonedPathToOneOfManyThatStartAtOnce) {
+  for (int round = 0; round < 20; ++round) {
+    const std::string path = folder.file("race" + std::to_string(round));
+    { const auto abandoned = listen_unix(strand, path); }
+    std::vector<std::unique_ptr<Listener>> listeners(4);
+    {
+      std::vector<std::jthread> threads;
+      for (auto& listener : listeners) {
+        threads.emplace_back([&] {
+          try {
+            listener = listen_unix(strand, path);
+          } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::kUnavailable) << error.what();
+          }
+        });
+      }
+    }
+    EXPECT_EQ(std::ranges::count_if(listeners, [](const auto& one) { return one != nullptr; }), 1);
+    EXPECT_NO_THROW(TestClient::unix_socket(path));
+  }
+}
+
+TEST_F(ListenerTest, LeavesTheFileOfAnotherThatTookItsPathAlone) {
+  const std::string path = folder.file("a.sock");
+  const auto first = listen_unix(strand, path);
+  std::filesystem::remove(path);  // by hand
+  const auto second = listen_unix(strand, path);
+  first->close();
+  EXPECT_NO_THROW(TestClient::unix_socket(path));
+}
+
+TEST_F(ListenerTest, LeavesNothingBesideTheSocket) {
+  const auto listener = listen_unix(strand, folder.file("a.sock"));
+  listener->close();
+  EXPECT_TRUE(
+      std::filesystem::is_empty(std::filesystem::path(folder.file("a.sock")).parent_path()));
 }
 
 TEST_F(ListenerTest, LeavesAFileAloneThatIsNoSocket) {
