@@ -19,8 +19,6 @@
 namespace landmarkdb::client {
 namespace {
 
-constexpr std::uint32_t kMostHypotheses = 100;
-
 const std::vector<cli::Example> kExamples = {
     {"landmarkdb query view.ply", "which stored place is this, and where in it was the sensor"},
     {"landmarkdb query --camera kinect.yaml depth.png --json | jq .hypotheses[0].translation_m",

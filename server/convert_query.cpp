@@ -13,8 +13,6 @@ namespace landmarkdb {
 
 namespace {
 
-// Nobody reads more hypotheses than this, and each is half a kilobyte.
-constexpr std::uint32_t kMaxTop = 1000;
 // Directions shorter than this are taken for "not set" by mistake.
 constexpr double kMinDirection = 1e-9;
 constexpr double kMaxPriorRadius_m = 1e9;
@@ -250,9 +248,10 @@ QueryOptions from_proto(const v1::QueryOptions& message) {
   options.profile = profile_from(message.profile());
   options.scenes.assign(message.scenes().begin(), message.scenes().end());
   if (message.has_top()) {
-    if (message.top() < 1 || message.top() > kMaxTop) {
-      refuse("options.top",
-             "is " + std::to_string(message.top()) + ", want 1 to " + std::to_string(kMaxTop));
+    if (message.top() < 1 || message.top() > kMostHypotheses) {
+      refuse(
+          "options.top",
+          "is " + std::to_string(message.top()) + ", want 1 to " + std::to_string(kMostHypotheses));
     }
     options.top = message.top();
   }

@@ -43,9 +43,10 @@ void check_options(const QueryOptions& options) {
     refuse("ratio",
            "ratio is " + std::to_string(options.ratio) + ", want more than 0 and at most 1");
   }
-  constexpr std::uint32_t kMostAnswers = 100;
-  if (options.top < 1 || options.top > kMostAnswers) {
-    refuse("top", "top is " + std::to_string(options.top) + ", want 1..100");
+  if (options.top < 1 || options.top > kMostHypotheses) {
+    refuse(
+        "top",
+        "top is " + std::to_string(options.top) + ", want 1 to " + std::to_string(kMostHypotheses));
   }
   if (options.up && !(options.up->allFinite() && options.up->norm() > 0.0)) {
     refuse("up", "the up direction must be finite and longer than zero");

@@ -21,11 +21,14 @@ enum class Filter { kRatio, kSlope, kClique };
 enum class Search { kExact, kFlann };
 enum class Solver { kSimilarity, kPnp };
 
+// The most a question may ask for with `top`: nobody reads more, and each is half a kilobyte.
+inline constexpr std::uint32_t kMostHypotheses = 100;
+
 // A question about one cloud. Angles in radians, lengths in metres.
 struct QueryOptions {
   Profile profile = Profile::kRobust;
   std::vector<std::string> scenes;  // empty: all
-  std::uint32_t top = 3;
+  std::uint32_t top = 3;            // 1 to kMostHypotheses
   double min_confidence = 0.5;
   std::optional<Eigen::Vector3d> up;  // direction against gravity, sensor frame, any length > 0
   std::optional<Eigen::Isometry3d> prior_T_scene_sensor;

@@ -90,6 +90,7 @@ TEST(QueryOptionsFromProto, RefusesWhatCannotBeAndNamesTheField) {
       {"options.filters", [](auto& o) { o.add_filters(v1::Filter(0)); }},
       {"options.filters", [](auto& o) { o.add_filters(v1::FILTER_RATIO); }},
       {"options.top", [](auto& o) { o.set_top(0); }},
+      {"options.top", [](auto& o) { o.set_top(kMostHypotheses + 1); }},
       {"options.top", [](auto& o) { o.set_top(4'000'000'000U); }},
       {"options.min_confidence", [&](auto& o) { o.set_min_confidence(nan); }},
       {"options.min_confidence", [](auto& o) { o.set_min_confidence(1.5); }},
@@ -130,6 +131,7 @@ TEST(QueryOptionsFromProto, ThrowsNothingButErrorsForMutatedMessages) {
     try {
       const QueryOptions options = from_proto(message);
       ASSERT_GE(options.top, 1U);
+      ASSERT_LE(options.top, kMostHypotheses);
       ASSERT_TRUE(options.ratio >= 0.0 && options.ratio <= 1.0);
     } catch (const Error& error) {
       ASSERT_EQ(error.code(), ErrorCode::kInvalidArgument) << error.what();
