@@ -143,7 +143,8 @@ void Connection::on_timer() {
 
 void Connection::send_frame(std::string frame) {
   if (phase_ != Phase::kOpen) return;
-  if (outbox_bytes_ > limits_.max_outbox_bytes) {
+  // One answer alone may be longer.
+  if (!outbox_.empty() && outbox_bytes_ + frame.size() > limits_.max_outbox_bytes) {
     cut("the client does not read its answers");
     return;
   }
@@ -178,8 +179,6 @@ void Connection::write_front() {
                                write_front();
                              } else if (phase_ == Phase::kFlushing) {
                                linger();
-                             } else if (input_ended_) {
-                               on_input_end();
                              }
                            }));
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <deque>
+#include <exception>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -48,8 +49,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   virtual void on_frame(std::string_view payload, MemoryBudget::Lease memory) = 0;
   // The peer broke a rule of the frames or a time limit; the connection reads no more.
   virtual void on_broken(ErrorCode code, const std::string& message) = 0;
-  // The peer will send no more, but may still be listening. Called again when all that was waiting
-  // has been sent.
+  // The peer will send no more: it is gone, or will not see more than what is on its way already.
+  // What waits in the outbox still goes out.
   virtual void on_input_end() = 0;
   // No frames for the idle time.
   virtual void on_idle() = 0;
@@ -66,15 +67,21 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool open() const { return phase_ == Phase::kOpen; }
   bool sending() const { return !outbox_.empty(); }
 
- private:
-  enum class Phase { kOpen, kFlushing, kLingering, kClosed };
-
+  // A handler that keeps the connection alive. What it throws (no memory) ends this connection,
+  // which could not go on, and nothing else.
   template <typename Handler>
   auto bound(Handler handler) {
     return [self = shared_from_this(), handler = std::move(handler)](auto... arguments) {
-      handler(arguments...);
+      try {
+        handler(arguments...);
+      } catch (const std::exception& error) {
+        self->cut(std::string("an error of the server itself: ") + error.what());
+      }
     };
   }
+
+ private:
+  enum class Phase { kOpen, kFlushing, kLingering, kClosed };
 
   void read_some();
   void on_read(const boost::system::error_code& error, std::size_t bytes);

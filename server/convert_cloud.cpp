@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <zstd.h>
+#include <zstd_errors.h>
 
 #include "engine/base/error.hpp"
 
@@ -122,6 +123,56 @@ class PointDecoder {
   Eigen::Vector3d offset_m_ = Eigen::Vector3d::Zero();
 };
 
+// The bytes of the decoded points, held until the allowance goes.
+void take_memory(std::uint64_t count, PointAllowance& allowance, const std::string& field) {
+  if (allowance.memory == nullptr) return;
+  const std::uint64_t bytes = count * sizeof(Eigen::Vector3f);
+  MemoryBudget::Lease lease = allowance.memory->reserve(bytes);
+  if (!lease) {
+    throw Error(ErrorCode::kResourceExhausted,
+                field + ": its " + std::to_string(count) + " points take " + std::to_string(bytes) +
+                    " bytes, the server has " + std::to_string(allowance.memory->left()) +
+                    " left of its limit of " + std::to_string(allowance.memory->bytes()) +
+                    "; try again later",
+                field);
+  }
+  allowance.held.push_back(std::move(lease));
+}
+
+[[noreturn]] void refuse_size(const std::string& field,
+                              std::uint64_t wanted,
+                              std::uint64_t bytes,
+                              std::uint64_t count) {
+  const std::string points = "the " + std::to_string(count) + " points";
+  refuse(field + ".xyz",
+         bytes > wanted
+             ? "decompresses to more than " + points
+             : "decompresses to " + std::to_string(wanted - bytes) + " bytes less than " + points);
+}
+
+// Most compressors write the size of what is inside before it: a frame that lies is not begun.
+void check_frame_size(const v1::Cloud& cloud,
+                      std::uint64_t wanted,
+                      std::uint64_t count,
+                      const std::string& field) {
+  const unsigned long long size = ZSTD_getFrameContentSize(cloud.xyz().data(), cloud.xyz().size());
+  if (size == ZSTD_CONTENTSIZE_ERROR) refuse(field + ".xyz", "is no zstd frame");
+  if (size != ZSTD_CONTENTSIZE_UNKNOWN && size != wanted) {
+    refuse_size(field, wanted, size, count);
+  }
+}
+
+[[noreturn]] void refuse_frame(std::size_t code, const std::string& field) {
+  if (ZSTD_getErrorCode(code) == ZSTD_error_frameParameter_windowTooLarge) {
+    throw Error(ErrorCode::kResourceExhausted,
+                field + ".xyz: the zstd frame asks for a larger window than the limit of " +
+                    std::to_string(1U << kMaxZstdWindowLog) +
+                    " bytes: compress at level 19 or below, without long matches",
+                field + ".xyz");
+  }
+  refuse(field + ".xyz", std::string("is no zstd frame: ") + ZSTD_getErrorName(code));
+}
+
 struct FreeDecompressor {
   void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
@@ -136,7 +187,12 @@ void decompress_points(const v1::Cloud& cloud,
   const std::unique_ptr<ZSTD_DCtx, FreeDecompressor> context(ZSTD_createDCtx());
   if (!context) throw Error(ErrorCode::kResourceExhausted, field + ": no memory to decompress");
 
-  std::uint64_t wanted = count * bytes_a_point;
+  ZSTD_DCtx_setParameter(context.get(), ZSTD_d_windowLogMax, kMaxZstdWindowLog);
+
+  const std::uint64_t wanted = count * bytes_a_point;
+  check_frame_size(cloud, wanted, count, field);
+  std::uint64_t yielded = 0;
+  points.reserve(count);
   std::vector<char> chunk(kChunkBytes);
   ZSTD_inBuffer in{cloud.xyz().data(), cloud.xyz().size(), 0};
   ZSTD_outBuffer out{chunk.data(), chunk.size(), 0};
@@ -144,27 +200,19 @@ void decompress_points(const v1::Cloud& cloud,
     const std::size_t in_before = in.pos;
     const std::size_t out_before = out.pos;
     const std::size_t hint = ZSTD_decompressStream(context.get(), &out, &in);
-    if (ZSTD_isError(hint) != 0) {
-      refuse(field + ".xyz", std::string("is no zstd frame: ") + ZSTD_getErrorName(hint));
-    }
+    if (ZSTD_isError(hint) != 0) refuse_frame(hint, field);
     done = hint == 0;
     if (!done && in.pos == in_before && out.pos == out_before) {
       refuse(field + ".xyz", "the zstd frame is cut off");
     }
     if (out.pos < out.size && !done) continue;
-    if (out.pos > wanted) {
-      refuse(field + ".xyz", "decompresses to more than the " + std::to_string(count) + " points");
-    }
-    wanted -= out.pos;
+    yielded += out.pos;
+    if (yielded > wanted) refuse_size(field, wanted, yielded, count);
     const std::size_t whole = out.pos - out.pos % bytes_a_point;
     if (whole > 0) decoder.append(std::string_view(chunk.data(), whole), points);
     out.pos = 0;
   }
-  if (wanted != 0) {
-    refuse(field + ".xyz",
-           "decompresses to " + std::to_string(wanted) + " bytes less than the " +
-               std::to_string(count) + " points");
-  }
+  if (yielded != wanted) refuse_size(field, wanted, yielded, count);
   if (in.pos != in.size) refuse(field + ".xyz", "has bytes after the zstd frame");
 }
 
@@ -190,6 +238,7 @@ PointCloud from_proto(const v1::Cloud& cloud, PointAllowance& allowance, const s
   const std::size_t bytes_a_point = point_bytes(cloud, field);
   const std::uint64_t count = checked_count(cloud, bytes_a_point, allowance, field);
   const PointDecoder decoder(cloud, field);
+  take_memory(count, allowance, field);
 
   PointCloud result;
   if (cloud.has_viewpoint()) {

@@ -79,7 +79,7 @@ void set_version(const VersionSummary& version, v1::SceneVersion& message) {
 
 }  // namespace
 
-SceneAddition from_proto(const v1::SceneAddRequest& request, PointAllowance allowance) {
+SceneAddition from_proto(const v1::SceneAddRequest& request, PointAllowance& allowance) {
   SceneAddition addition;
   addition.name = request.name();
   if (request.scans().empty()) refuse("scans", "there is none, want at least one");

@@ -17,7 +17,7 @@ struct SceneAddition {
   std::vector<Scan> scans;
   IndexOptions options;
 };
-SceneAddition from_proto(const v1::SceneAddRequest& request, PointAllowance allowance);
+SceneAddition from_proto(const v1::SceneAddRequest& request, PointAllowance& allowance);
 
 Landmark from_proto(const v1::Landmark& landmark);
 

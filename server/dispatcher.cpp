@@ -1,6 +1,7 @@
 #include "server/dispatcher.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,19 +41,30 @@ void add_query_fields(const v1::QueryResult& result, std::vector<LogField>& fiel
 void Dispatcher::submit(const std::shared_ptr<Job>& job, Answer answer) {
   const Lane lane = lane_of(job->request);
   if (lane == Lane::kInline) {
-    if (job->claim()) answer(work(*job));
+    run(*job, answer);
     return;
   }
   WorkQueue& queue = lane == Lane::kWrite ? writes_ : compute_;
-  const bool queued = queue.post([this, job, answer] {
-    if (job->claim()) answer(work(*job));
-  });
+  const bool queued = queue.post([this, job, answer] { run(*job, answer); });
   if (!queued && job->claim()) {
     ++counters_.rejected_total;
     answer(refuse(*job,
                   ErrorCode::kResourceExhausted,
                   "too many requests are waiting already; try again shortly"));
   }
+}
+
+void Dispatcher::run(Job& job, const Answer& answer) {
+  if (!job.claim()) return;
+  v1::Envelope reply;
+  try {
+    reply = work(job);
+  } catch (const std::exception& error) {  // the handler throws nothing: the log, or no memory
+    reply = error_envelope(job.request.request_id(),
+                           ErrorCode::kInternal,
+                           std::string("an error of the server itself: ") + error.what());
+  }
+  answer(std::move(reply));
 }
 
 v1::Envelope Dispatcher::work(Job& job) {

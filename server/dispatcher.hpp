@@ -61,6 +61,8 @@ class Dispatcher {
   v1::Envelope refuse(const Job& job, ErrorCode code, const std::string& message);
 
  private:
+  // Works on the job, unless somebody has claimed it, and answers whatever happens.
+  void run(Job& job, const Answer& answer);
   v1::Envelope work(Job& job);
   int threads_for(Lane lane) const;
   void log_outcome(const Job& job, const v1::Envelope& reply, Job::Clock::time_point started);

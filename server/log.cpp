@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <exception>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
@@ -66,8 +67,9 @@ std::optional<LogLevel> log_level_from_name(std::string_view name) {
   return std::nullopt;
 }
 
-void Logger::write(LogLevel level, std::string_view message, const std::vector<LogField>& fields) {
-  if (!wants(level)) return;
+std::string Logger::line(LogLevel level,
+                         std::string_view message,
+                         const std::vector<LogField>& fields) {
   std::string line;
   if (json_) {
     line = R"({"time":")" + timestamp() + R"(","level":")" + std::string(log_level_name(level)) +
@@ -75,14 +77,22 @@ void Logger::write(LogLevel level, std::string_view message, const std::vector<L
     for (const LogField& field : fields) {
       line += "," + quoted(field.key, true) + ":" + value_text(field, true);
     }
-    line += "}\n";
-  } else {
-    line = timestamp() + " " + std::string(log_level_name(level)) + " " + message_text(message);
-    for (const LogField& field : fields) line += " " + field.key + "=" + value_text(field, false);
-    line += "\n";
+    return line + "}\n";
   }
-  const std::lock_guard lock(mutex_);
-  out_ << line << std::flush;
+  line = timestamp() + " " + std::string(log_level_name(level)) + " " + message_text(message);
+  for (const LogField& field : fields) line += " " + field.key + "=" + value_text(field, false);
+  return line + "\n";
+}
+
+void Logger::write(LogLevel level, std::string_view message, const std::vector<LogField>& fields) {
+  if (!wants(level)) return;
+  try {
+    const std::string text = line(level, message, fields);
+    const std::lock_guard lock(mutex_);
+    out_ << text << std::flush;
+  } catch (const std::exception&) {
+    // No memory, or a stream that throws: there is nobody left to tell.
+  }
 }
 
 }  // namespace landmarkdb

@@ -24,16 +24,20 @@ struct LogField {
 };
 
 // One line an event: time (UTC), level, message, fields; as text or as one JSON object. Control
-// characters are escaped, so that no name from the wire can forge a line. Thread-safe.
+// characters are escaped, so that no name from the wire can forge a line. A line that cannot be
+// written is lost: no request ends for want of a log. Thread-safe.
 class Logger {
  public:
   // `out` must outlive the logger.
   Logger(std::ostream& out, LogLevel level, bool json) : out_(out), level_(level), json_(json) {}
 
+  // Does not throw.
   void write(LogLevel level, std::string_view message, const std::vector<LogField>& fields = {});
   bool wants(LogLevel level) const { return level >= level_ && level_ != LogLevel::kOff; }
 
  private:
+  std::string line(LogLevel level, std::string_view message, const std::vector<LogField>& fields);
+
   std::ostream& out_;
   LogLevel level_;
   bool json_;

@@ -9,7 +9,7 @@ namespace landmarkdb {
 // A number of bytes that many share. Thread-safe; must outlive its leases.
 class MemoryBudget {
  public:
-  explicit MemoryBudget(std::size_t bytes) : left_(bytes) {}
+  explicit MemoryBudget(std::size_t bytes) : bytes_(bytes), left_(bytes) {}
 
   // A part of the budget, given back when it goes.
   class Lease {
@@ -43,9 +43,11 @@ class MemoryBudget {
     return {this, bytes};
   }
 
+  std::size_t bytes() const { return bytes_; }  // in all
   std::size_t left() const { return left_; }
 
  private:
+  std::size_t bytes_;
   std::atomic<std::size_t> left_;
 };
 

@@ -37,7 +37,10 @@ struct ServerOptions {
   bool allow_insecure = false;
   std::string token{};  // empty: none is asked for
   std::size_t max_message_bytes = kDefaultMaxMessageBytes;
-  std::size_t max_connections = 128;
+  std::size_t max_connections = 128;  // of clients: connections that have said Hello
+  // Connections that have not; past it the oldest of them is cut. 0: 256, or as many as clients
+  // where that is more, so that all of them may come back at once after a restart.
+  std::size_t max_strangers = 0;
   std::chrono::milliseconds deadline{60'000};  // of a query, waiting included
   std::uint64_t max_points = kDefaultMaxPoints;
   // Of the long messages that are being received or worked on, all connections together.

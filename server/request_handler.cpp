@@ -168,7 +168,7 @@ v1::QueryResult RequestHandler::query(const v1::QueryRequest& request, const Run
                 "clouds");
   }
   const QueryOptions options = from_proto(request.options());
-  PointAllowance allowance{options_.max_points};
+  PointAllowance allowance{options_.max_points, &memory_};
   const PointCloud cloud = from_proto(request.clouds(0), allowance, "clouds[0]");
   const StageTimings::Duration load = std::chrono::steady_clock::now() - start;
 

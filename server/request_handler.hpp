@@ -4,6 +4,7 @@
 
 #include "engine/base/run_context.hpp"
 #include "proto/landmarkdb.pb.h"
+#include "server/memory_budget.hpp"
 #include "server/options.hpp"
 #include "server/scene_admin.hpp"
 #include "server/server_state.hpp"
@@ -32,16 +33,18 @@ v1::Envelope error_envelope(std::uint64_t request_id,
 // Thread-safe.
 class RequestHandler {
  public:
-  // All must outlive the handler.
+  // All must outlive the handler. Decoded clouds are taken from `memory`.
   RequestHandler(const ServerOptions& options,
                  ServerState& state,
                  Counters& counters,
-                 const WorkQueue& compute)
+                 const WorkQueue& compute,
+                 MemoryBudget& memory)
       : options_(options),
         state_(state),
         counters_(counters),
         compute_(compute),
-        admin_(options, state) {}
+        memory_(memory),
+        admin_(options, state, memory) {}
 
   // Never throws. `context` says when to stop and whom to tell of progress.
   v1::Envelope handle(const v1::Envelope& request, const RunContext& context);
@@ -57,6 +60,7 @@ class RequestHandler {
   ServerState& state_;
   Counters& counters_;
   const WorkQueue& compute_;
+  MemoryBudget& memory_;
   SceneAdmin admin_;
 };
 

@@ -50,6 +50,7 @@ Store SceneAdmin::open_for_change() const {
 
 void SceneAdmin::put_in_service() const {
   RunContext context;
+  context.stop = state_.stop_token();
   context.threads = std::max(options_.threads, 1);
   try {
     state_.reload(context);
@@ -84,7 +85,8 @@ v1::SceneReply SceneAdmin::add(const v1::SceneAddRequest& request,
                                const RunContext& context) const {
   Store store = open_for_change();  // refused before an hour is spent on describing
   validate_name(request.name(), "scene name");
-  SceneAddition addition = from_proto(request, PointAllowance{options_.max_points});
+  PointAllowance allowance{options_.max_points, &memory_};
+  SceneAddition addition = from_proto(request, allowance);
   const SceneRecord record = describe_scene(
       std::move(addition.name), std::move(addition.scans), addition.options, context);
   store.insert(record, context);

@@ -2,6 +2,7 @@
 
 #include "engine/base/run_context.hpp"
 #include "proto/landmarkdb.pb.h"
+#include "server/memory_budget.hpp"
 #include "server/options.hpp"
 #include "server/server_state.hpp"
 
@@ -12,7 +13,9 @@ namespace landmarkdb {
 // Each call opens its own Store: thread-safe.
 class SceneAdmin {
  public:
-  SceneAdmin(const ServerOptions& options, ServerState& state) : options_(options), state_(state) {}
+  // All must outlive it. The points of scenes to be added are taken from `memory`.
+  SceneAdmin(const ServerOptions& options, ServerState& state, MemoryBudget& memory)
+      : options_(options), state_(state), memory_(memory) {}
 
   v1::SceneListReply list() const;
   v1::SceneReply show(const std::string& name) const;
@@ -26,11 +29,13 @@ class SceneAdmin {
 
  private:
   class Store open_for_change() const;
-  // What was written is on disk, whatever happens to the request now: no deadline holds for this.
+  // What was written is on disk, whatever happens to the request now: neither its deadline nor its
+  // Cancel holds for this, only the server's end.
   void put_in_service() const;
 
   const ServerOptions& options_;
   ServerState& state_;
+  MemoryBudget& memory_;
 };
 
 }  // namespace landmarkdb

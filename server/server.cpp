@@ -4,7 +4,7 @@
 #include <csignal>
 #include <fstream>
 #include <map>
-#include <stop_token>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -18,6 +18,7 @@
 #include "engine/base/error.hpp"
 #include "server/dispatcher.hpp"
 #include "server/listener.hpp"
+#include "server/run_io.hpp"
 #include "server/session.hpp"
 #include "store/store.hpp"
 
@@ -29,8 +30,8 @@ using boost::system::error_code;
 
 // Parsing a large request keeps a thread for some 20 ms; with two, others are not held up by it.
 constexpr int kSocketThreads = 2;
-// Clients past --max-connections are told so; past these, they are just cut off.
-constexpr std::size_t kMaxTurnedAway = 32;
+// Connections before Hello, each some 70 KB: enough for a crowd that comes at once, 18 MB in all.
+constexpr std::size_t kMaxStrangers = 256;
 constexpr std::chrono::milliseconds kStopPoll{10};
 
 ServerOptions completed(ServerOptions options) {
@@ -48,6 +49,9 @@ ServerOptions completed(ServerOptions options) {
   options.memory_budget_bytes = std::max(options.memory_budget_bytes, options.max_message_bytes);
   if (options.max_connections == 0) {
     throw Error(ErrorCode::kInvalidArgument, "want at least one connection", "--max-connections");
+  }
+  if (options.max_strangers == 0) {
+    options.max_strangers = std::max(kMaxStrangers, options.max_connections);
   }
   if (options.deadline.count() <= 0) {
     throw Error(ErrorCode::kInvalidArgument, "want a deadline above 0", "--deadline");
@@ -90,6 +94,7 @@ struct Server::State {
 
   void load(bool first);
   void accept(Connection::Socket socket, std::string peer);
+  SessionEvents events_of(std::uint64_t id);
   void wait_for_signal();
   void begin_stop();
   void watch_stop();
@@ -109,6 +114,7 @@ struct Server::State {
   std::vector<std::string> addresses;
   std::uint16_t port = 0;
   std::map<std::uint64_t, std::shared_ptr<Session>> sessions;
+  std::set<std::uint64_t> strangers;  // sessions that have not said Hello; the oldest first
   std::uint64_t next_session = 1;
   boost::asio::signal_set signals{control};
   boost::asio::steady_timer stop_timer{control};
@@ -116,12 +122,14 @@ struct Server::State {
   bool cancelled = false;
   std::chrono::steady_clock::time_point stop_began;
 
-  std::stop_source stop_source;  // of work that belongs to no client
-  WorkQueue compute{options.threads, options.max_waiting_queries};
-  WorkQueue writes{1, options.max_waiting_writes};
-  RequestHandler handler{options, state, counters, compute};
+  WorkQueue::OnFailure on_failure = [this](const std::string& what) {
+    log.write(LogLevel::kError, "a task failed", {{"reason", what}});
+  };
+  WorkQueue compute{options.threads, options.max_waiting_queries, on_failure};
+  WorkQueue writes{1, options.max_waiting_writes, on_failure};
+  RequestHandler handler{options, state, counters, compute, budget};
   Dispatcher dispatcher{handler, compute, writes, counters, log, options.threads};
-  SessionServices services{options, dispatcher, state, budget, log};
+  SessionServices services{options, dispatcher, state, budget, counters, log};
   std::vector<std::thread> threads;
 };
 
@@ -129,7 +137,7 @@ void Server::State::load(bool first) {
   const bool queued = writes.post([this, first] {
     const auto start = std::chrono::steady_clock::now();
     RunContext context;
-    context.stop = stop_source.get_token();
+    context.stop = state.stop_token();
     context.threads = first ? options.threads : std::max(1, options.threads / 2);
     try {
       const std::shared_ptr<const Served> served = state.reload(context);
@@ -154,25 +162,33 @@ void Server::State::load(bool first) {
 
 void Server::State::accept(Connection::Socket socket, std::string peer) {
   ++counters.connections_total;
-  if (stopping || sessions.size() >= options.max_connections + kMaxTurnedAway) return;
+  if (stopping) return;
+  if (strangers.size() >= options.max_strangers) {
+    const auto oldest = strangers.begin();
+    ++counters.rejected_total;
+    sessions.at(*oldest)->make_room();
+    strangers.erase(oldest);
+  }
   const std::uint64_t id = next_session++;
-  const bool full = sessions.size() >= options.max_connections;
   auto session =
-      std::make_shared<Session>(std::move(socket), id, std::move(peer), services, [this, id] {
-        boost::asio::post(control, [this, id] {
-          sessions.erase(id);
-          counters.connections = sessions.size();
-        });
-      });
+      std::make_shared<Session>(std::move(socket), id, std::move(peer), services, events_of(id));
+  strangers.insert(id);
   sessions[id] = session;
   counters.connections = sessions.size();
-  if (full) {
-    ++counters.rejected_total;
-    session->turn_away("all " + std::to_string(options.max_connections) +
-                       " connections (--max-connections) are taken; try again later");
-  } else {
-    session->start();
-  }
+  session->start();
+}
+
+SessionEvents Server::State::events_of(std::uint64_t id) {
+  return {
+      .on_greeted = [this, id] { boost::asio::post(control, [this, id] { strangers.erase(id); }); },
+      .on_closed =
+          [this, id] {
+            boost::asio::post(control, [this, id] {
+              strangers.erase(id);
+              sessions.erase(id);
+              counters.connections = sessions.size();
+            });
+          }};
 }
 
 void Server::State::wait_for_signal() {
@@ -196,7 +212,6 @@ void Server::State::begin_stop() {
   stopping = true;
   stop_began = std::chrono::steady_clock::now();
   state.set_stopping();
-  stop_source.request_stop();
   for (const auto& listener : listeners) listener->close();
   for (const auto& [id, session] : sessions) session->go_away("the server is stopping");
   watch_stop();
@@ -245,10 +260,14 @@ void Server::start() {
   State& s = *state_;
   for (const auto& listener : s.listeners) {
     listener->start([&s](Connection::Socket socket, std::string peer) {
-      s.accept(std::move(socket), std::move(peer));
+      try {
+        s.accept(std::move(socket), std::move(peer));
+      } catch (const std::exception& error) {  // this one is lost, the next may be served
+        s.log.write(LogLevel::kError, "connection lost", {{"reason", std::string(error.what())}});
+      }
     });
   }
-  for (int i = 0; i < kSocketThreads; ++i) s.threads.emplace_back([&s] { s.io.run(); });
+  for (int i = 0; i < kSocketThreads; ++i) s.threads.emplace_back([&s] { run_io(s.io, s.log); });
   s.load(true);
 }
 

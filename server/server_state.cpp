@@ -111,8 +111,11 @@ Health ServerState::health() const {
 }
 
 void ServerState::set_stopping() {
-  const std::lock_guard lock(mutex_);
-  stopping_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  stop_source_.request_stop();
 }
 
 }  // namespace landmarkdb

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -48,10 +49,14 @@ class ServerState {
   std::shared_ptr<const Served> reload(const RunContext& context);
 
   Health health() const;
+  // The server ends: health says so, and who holds the token stops.
   void set_stopping();
+  // Of work that belongs to no client.
+  std::stop_token stop_token() const { return stop_source_.get_token(); }
 
  private:
   std::string db_path_;
+  std::stop_source stop_source_;
   std::mutex reload_mutex_;
   mutable std::mutex mutex_;  // guards all below
   std::shared_ptr<const Served> served_;

@@ -27,50 +27,48 @@ Session::Session(Socket socket,
                  std::uint64_t id,
                  std::string peer,
                  SessionServices& services,
-                 std::function<void()> on_closed)
+                 SessionEvents events)
     : Connection(std::move(socket), services.options.connection, services.budget),
       id_(id),
       peer_(std::move(peer)),
       services_(services),
-      on_closed_(std::move(on_closed)) {}
+      events_(std::move(events)) {}
 
 void Session::start() {
-  boost::asio::dispatch(executor(), [self = self()] {
-    self->services_.log.write(
-        LogLevel::kDebug, "connected", {{"connection", self->id_}, {"peer", self->peer_}});
-    self->start_reading();
-  });
+  boost::asio::dispatch(
+      executor(), bound([this] {
+        services_.log.write(LogLevel::kDebug, "connected", {{"connection", id_}, {"peer", peer_}});
+        start_reading();
+      }));
 }
 
-void Session::turn_away(const std::string& why) {
-  boost::asio::dispatch(executor(), [self = self(), why] {
-    self->start_reading();
-    self->send_error(0, ErrorCode::kResourceExhausted, why);
-    self->close_after_sending();
-  });
+void Session::make_room() {
+  boost::asio::dispatch(executor(), bound([this] {
+                          if (!greeted_) cut("it had not said Hello, and others came");
+                        }));
 }
 
 void Session::go_away(const std::string& why) {
-  boost::asio::dispatch(executor(), [self = self(), why] {
-    if (!self->open() || self->leaving_) return;
-    self->leaving_ = true;
-    v1::Envelope envelope;
-    envelope.mutable_go_away()->set_reason(why);
-    self->send(envelope);
-    self->close_if_done();
-  });
+  boost::asio::dispatch(executor(), bound([this, why] {
+                          if (!open() || leaving_) return;
+                          leaving_ = true;
+                          v1::Envelope envelope;
+                          envelope.mutable_go_away()->set_reason(why);
+                          send(envelope);
+                          close_if_done();
+                        }));
 }
 
 void Session::cancel_requests() {
-  boost::asio::dispatch(executor(), [self = self()] {
-    std::vector<std::uint64_t> ids;
-    for (const auto& entry : self->requests_) ids.push_back(entry.first);
-    for (const std::uint64_t id : ids) self->cancel(id);
-  });
+  boost::asio::dispatch(executor(), bound([this] {
+                          std::vector<std::uint64_t> ids;
+                          for (const auto& entry : requests_) ids.push_back(entry.first);
+                          for (const std::uint64_t id : ids) cancel(id);
+                        }));
 }
 
 void Session::close_now() {
-  boost::asio::dispatch(executor(), [self = self()] { self->cut("the server is stopping"); });
+  boost::asio::dispatch(executor(), bound([this] { cut("the server is stopping"); }));
 }
 
 void Session::on_frame(std::string_view payload, MemoryBudget::Lease memory) {
@@ -86,7 +84,12 @@ void Session::on_frame(std::string_view payload, MemoryBudget::Lease memory) {
   } else if (envelope.has_cancel()) {
     cancel(envelope.request_id());
   } else if (!envelope.has_pong()) {
-    submit(std::move(envelope), std::move(memory));
+    const std::uint64_t request_id = envelope.request_id();
+    try {
+      submit(std::move(envelope), std::move(memory));
+    } catch (const std::exception& error) {
+      fail(request_id, error);
+    }
   }
 }
 
@@ -97,19 +100,39 @@ void Session::hello(const v1::Envelope& envelope) {
   }
   v1::Envelope answer = answer_hello(envelope, services_.options, services_.state);
   if (answer.has_error()) {
-    services_.log.write(
-        LogLevel::kWarning,
-        "refused",
-        {{"connection", id_}, {"peer", peer_}, {"reason", answer.error().message()}});
-    send(answer);
-    close_after_sending();
+    refuse_hello(answer);
     return;
   }
-  greeted_ = true;
+  if (!take_place()) {
+    ++services_.counters.rejected_total;
+    refuse_hello(error_envelope(envelope.request_id(),
+                                ErrorCode::kResourceExhausted,
+                                "all " + std::to_string(services_.options.max_connections) +
+                                    " connections (--max-connections) are taken; try again later"));
+    return;
+  }
+  if (events_.on_greeted) events_.on_greeted();
   open_up(services_.options.max_message_bytes);
   services_.log.write(
       LogLevel::kDebug, "hello", {{"connection", id_}, {"client", envelope.hello().client()}});
   send(answer);
+}
+
+bool Session::take_place() {
+  std::size_t taken = services_.clients;
+  do {
+    if (taken >= services_.options.max_connections) return false;
+  } while (!services_.clients.compare_exchange_weak(taken, taken + 1));
+  greeted_ = true;
+  return true;
+}
+
+void Session::refuse_hello(const v1::Envelope& answer) {
+  services_.log.write(LogLevel::kWarning,
+                      "refused",
+                      {{"connection", id_}, {"peer", peer_}, {"reason", answer.error().message()}});
+  send(answer);
+  close_after_sending();
 }
 
 void Session::submit(v1::Envelope envelope, MemoryBudget::Lease memory) {
@@ -160,15 +183,25 @@ void Session::submit(v1::Envelope envelope, MemoryBudget::Lease memory) {
         const auto alive = weak.lock();
         if (!alive) return;
         boost::asio::post(executor(),
-                          [this, alive, request_id, stage = std::string(progress.stage), progress] {
+                          bound([this, request_id, stage = std::string(progress.stage), progress] {
                             report(request_id, {stage, progress.done, progress.total});
-                          });
+                          }));
       };
   services_.dispatcher.submit(job, [this, alive = self(), request_id](v1::Envelope answer) {
-    boost::asio::dispatch(executor(), [this, alive, request_id, answer = std::move(answer)] {
-      finish(request_id, answer);
-    });
+    boost::asio::dispatch(executor(), bound([this, request_id, answer = std::move(answer)] {
+                            finish(request_id, answer);
+                          }));
   });
+}
+
+void Session::fail(std::uint64_t request_id, const std::exception& error) {
+  const auto found = requests_.find(request_id);
+  // Claimed: the dispatcher has it, and will answer.
+  if (found != requests_.end() && !found->second.job->claim()) return;
+  requests_.erase(request_id);
+  send_error(request_id,
+             ErrorCode::kInternal,
+             std::string("an error of the server itself: ") + error.what());
 }
 
 // Queries end in time whatever the client asks for; changes take the time they need unless the
@@ -184,11 +217,11 @@ void Session::set_deadline(OpenRequest& open) {
   job.deadline = job.arrived + limit;
   open.deadline_timer = std::make_unique<boost::asio::steady_timer>(executor(), *job.deadline);
   open.deadline_timer->async_wait(
-      [this, alive = self(), id = job.request.request_id()](const auto& cancelled) {
+      bound([this, id = job.request.request_id()](const auto& cancelled) {
         if (cancelled) return;
         answer_if_waiting(
             id, ErrorCode::kDeadlineExceeded, "the deadline passed while the request was waiting");
-      });
+      }));
 }
 
 void Session::cancel(std::uint64_t request_id) {
@@ -244,24 +277,30 @@ void Session::on_broken(ErrorCode code, const std::string& message) {
   send_error(0, code, message);
 }
 
+// Half-closed and closed look alike from here, and most who end their sending are gone.
 void Session::on_input_end() {
-  input_ended_ = true;
-  close_if_done();
+  stop_requests();
+  close_after_sending();
 }
 
 void Session::on_idle() { go_away("idle"); }
 
 void Session::close_if_done() {
-  if ((leaving_ || input_ended_) && requests_.empty()) close_after_sending();
+  if (leaving_ && requests_.empty()) close_after_sending();
+}
+
+void Session::stop_requests() {
+  for (auto& entry : requests_) entry.second.job->stop.request_stop();
+  requests_.clear();
 }
 
 void Session::on_closed(const std::string& why) {
-  for (auto& entry : requests_) entry.second.job->stop.request_stop();
-  requests_.clear();
+  stop_requests();
+  if (std::exchange(greeted_, false)) --services_.clients;
+  if (events_.on_closed) std::exchange(events_.on_closed, nullptr)();
   std::vector<LogField> fields = {{"connection", id_}};
   if (!why.empty()) fields.push_back({"reason", why});
   services_.log.write(why.empty() ? LogLevel::kDebug : LogLevel::kInfo, "closed", fields);
-  if (on_closed_) std::exchange(on_closed_, nullptr)();
 }
 
 }  // namespace landmarkdb

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -18,25 +20,34 @@ struct SessionServices {
   Dispatcher& dispatcher;
   ServerState& state;
   MemoryBudget& budget;
+  Counters& counters;
   Logger& log;
+  std::atomic<std::size_t> clients{0};  // connections that have said Hello
+};
+
+// What a session tells its owner, each once, on the session's strand.
+struct SessionEvents {
+  std::function<void()> on_greeted;  // Hello is done: a client, no stranger any more
+  std::function<void()> on_closed;
 };
 
 // One client: Hello first, then requests, any number at once, answered as they are ready.
 //
-// Requests that are open when the client goes away, or when it asks to, are told to stop. Public
-// members may be called from any thread.
+// Requests that are open when the client closes or ends its sending, or when it asks to, are told
+// to stop. A connection takes one of the server's places (max_connections) when it says Hello.
+// Public members may be called from any thread.
 class Session final : public Connection {
  public:
-  // `peer` is for the log. `on_closed` is called once, on the session's strand.
+  // `peer` is for the log.
   Session(Socket socket,
           std::uint64_t id,
           std::string peer,
           SessionServices& services,
-          std::function<void()> on_closed);
+          SessionEvents events);
 
   void start();
-  // Says that there is no place for this client, and closes.
-  void turn_away(const std::string& why);
+  // Ends at once, unless Hello has come meanwhile.
+  void make_room();
   // The server stops: no new requests; closes once those open are answered.
   void go_away(const std::string& why);
   // Tells the open requests to stop.
@@ -57,9 +68,16 @@ class Session final : public Connection {
   bool busy() const override { return !requests_.empty(); }
 
   void hello(const v1::Envelope& envelope);
+  // False: as many clients as may be are connected.
+  bool take_place();
+  // Sends an error and ends: a Hello that does not do.
+  void refuse_hello(const v1::Envelope& answer);
   void submit(v1::Envelope envelope, MemoryBudget::Lease memory);
   void set_deadline(OpenRequest& open);
   void cancel(std::uint64_t request_id);
+  void stop_requests();
+  // Answers a request that could not be handed on.
+  void fail(std::uint64_t request_id, const std::exception& error);
   // Answers a request that no thread has begun to work on; nothing where one has.
   void answer_if_waiting(std::uint64_t request_id, ErrorCode code, const std::string& message);
   void report(std::uint64_t request_id, const Progress& progress);
@@ -75,11 +93,10 @@ class Session final : public Connection {
   const std::uint64_t id_;
   const std::string peer_;
   SessionServices& services_;
-  std::function<void()> on_closed_;
+  SessionEvents events_;
   std::unordered_map<std::uint64_t, OpenRequest> requests_;
   bool greeted_ = false;
-  bool leaving_ = false;      // no new requests are taken
-  bool input_ended_ = false;  // the client sends no more
+  bool leaving_ = false;  // no new requests are taken
 };
 
 }  // namespace landmarkdb

@@ -172,6 +172,68 @@ TEST(CloudFromProto, RefusesCompressedPointsThatAreNotWhatIsAnnounced) {
   EXPECT_EQ(refusal(cloud).code(), ErrorCode::kResourceExhausted);
 }
 
+// A frame whose writer did not know the size of what is inside.
+std::string compressed_stream(const std::string& bytes, int window_log = 0) {
+  ZSTD_CCtx* context = ZSTD_createCCtx();
+  ZSTD_CCtx_setParameter(context, ZSTD_c_contentSizeFlag, 0);
+  if (window_log > 0) ZSTD_CCtx_setParameter(context, ZSTD_c_windowLog, window_log);
+  std::string out(ZSTD_compressBound(bytes.size()), '\0');
+  ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
+  ZSTD_outBuffer result{out.data(), out.size(), 0};
+  ZSTD_compressStream2(context, &result, &in, ZSTD_e_flush);  // with the end unknown yet
+  ZSTD_compressStream2(context, &result, &in, ZSTD_e_end);
+  ZSTD_freeCCtx(context);
+  out.resize(result.pos);
+  return out;
+}
+
+TEST(CloudFromProto, TakesAFrameThatDoesNotSayItsSize) {
+  v1::Cloud cloud = float_cloud({1, 2, 3, 4, 5, 6});
+  cloud.set_xyz(compressed_stream(cloud.xyz()));
+  cloud.set_zstd(true);
+  EXPECT_EQ(decode(cloud).size(), 2U);
+  cloud.set_points(1);
+  EXPECT_THAT(refusal(cloud).what(), HasSubstr("more than the 1 points"));
+  cloud.set_points(3);
+  EXPECT_THAT(refusal(cloud).what(), HasSubstr("12 bytes less"));
+}
+
+// A window is memory too, and a few bytes of header may ask for 2 GB of it.
+TEST(CloudFromProto, RefusesAWindowOverTheLimitAndNamesIt) {
+  v1::Cloud cloud;
+  cloud.set_encoding(v1::POINT_ENCODING_FLOAT32);
+  cloud.set_zstd(true);
+  cloud.set_points(100);
+  cloud.set_xyz(compressed_stream(std::string(1200, '\1'), kMaxZstdWindowLog + 1));
+  const Error error = refusal(cloud);
+  EXPECT_EQ(error.code(), ErrorCode::kResourceExhausted);
+  EXPECT_THAT(error.what(), HasSubstr("8388608"));
+  cloud.set_xyz(compressed_stream(std::string(1200, '\1'), kMaxZstdWindowLog));
+  EXPECT_EQ(decode(cloud).size(), 100U);
+}
+
+TEST(CloudFromProto, TakesTheBytesOfItsPointsFromTheMemoryBudget) {
+  MemoryBudget memory(100);
+  v1::Cloud packed = float_cloud(std::vector<float>(12, 1.0F));
+  packed.set_xyz(compressed(packed.xyz()));
+  packed.set_zstd(true);
+  {
+    PointAllowance allowance{1000, &memory};
+    from_proto(packed, allowance, "clouds[0]");
+    EXPECT_EQ(memory.left(), 52U) << "4 points of 12 bytes";
+    from_proto(float_cloud(std::vector<float>(12, 1.0F)), allowance, "clouds[1]");
+    EXPECT_EQ(memory.left(), 4U);
+    try {
+      from_proto(packed, allowance, "clouds[2]");
+      FAIL() << "more memory than there is was taken";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kResourceExhausted);
+      EXPECT_THAT(error.what(), HasSubstr("4 left of its limit of 100"));
+    }
+  }
+  EXPECT_EQ(memory.left(), 100U);
+}
+
 TEST(CloudFromProto, StopsADecompressionBombAtTheAnnouncedSize) {
   v1::Cloud cloud;
   cloud.set_encoding(v1::POINT_ENCODING_FLOAT32);

@@ -29,7 +29,8 @@ v1::SceneAddRequest good_request() {
 }
 
 TEST(SceneAdditionFromProto, CarriesScansPosesAndOptions) {
-  const SceneAddition addition = from_proto(good_request(), PointAllowance{});
+  PointAllowance allowance;
+  const SceneAddition addition = from_proto(good_request(), allowance);
   EXPECT_EQ(addition.name, "lobby");
   EXPECT_EQ(addition.options.kind, EntryKind::kObject);
   EXPECT_EQ(addition.options.voxel_m, 0.05);
@@ -43,8 +44,10 @@ TEST(SceneAdditionFromProto, CarriesScansPosesAndOptions) {
 TEST(SceneAdditionFromProto, CountsThePointsOfAllScansTogether) {
   v1::SceneAddRequest request = good_request();
   *request.add_scans() = request.scans(0);
-  EXPECT_THAT(from_proto(request, PointAllowance{4}).scans, SizeIs(2));
-  EXPECT_THROW(from_proto(request, PointAllowance{3}), Error);
+  PointAllowance four{4};
+  EXPECT_THAT(from_proto(request, four).scans, SizeIs(2));
+  PointAllowance three{3};
+  EXPECT_THROW(from_proto(request, three), Error);
 }
 
 TEST(SceneAdditionFromProto, RefusesWhatCannotBeAndNamesTheField) {
@@ -74,7 +77,8 @@ TEST(SceneAdditionFromProto, RefusesWhatCannotBeAndNamesTheField) {
     v1::SceneAddRequest request = good_request();
     cases[i].spoil(request);
     try {
-      from_proto(request, PointAllowance{});
+      PointAllowance allowance;
+      from_proto(request, allowance);
       ADD_FAILURE() << "case " << i << " was taken, " << cases[i].field;
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument) << "case " << i;

@@ -56,5 +56,13 @@ TEST(LogLevel, IsFoundByItsName) {
   EXPECT_EQ(log_level_name(LogLevel::kOff), "off");
 }
 
+TEST(Logger, ThrowsNothingWhenItsLineCannotBeWritten) {
+  std::ostringstream text;
+  text.exceptions(std::ios::badbit | std::ios::failbit);
+  Logger log(text, LogLevel::kInfo, false);
+  EXPECT_THROW(text.setstate(std::ios::badbit), std::ios::failure);
+  EXPECT_NO_THROW(log.write(LogLevel::kError, "lost"));
+}
+
 }  // namespace
 }  // namespace landmarkdb

@@ -30,7 +30,7 @@ class RequestHandlerTest : public ::testing::Test {
   }
 
   v1::Envelope ask(const v1::Envelope& request) {
-    RequestHandler handler(options, state(), counters, queue);
+    RequestHandler handler(options, state(), counters, queue, memory);
     return handler.handle(request, context);
   }
   ServerState& state() {
@@ -47,6 +47,7 @@ class RequestHandlerTest : public ::testing::Test {
   ServerOptions options;
   Counters counters;
   WorkQueue queue{1, 1};
+  MemoryBudget memory{std::size_t{64} * 1024 * 1024};
   RunContext context;
 
  private:
@@ -192,6 +193,19 @@ TEST_F(RequestHandlerTest, PutsChangesInService) {
   EXPECT_TRUE(ask(remove).has_scene_remove_reply());
   EXPECT_EQ(state().served()->scenes, 0U);
   EXPECT_EQ(ask(remove).error().code(), v1::CODE_NOT_FOUND);
+}
+
+// A stop used to wait for the whole catalogue to be built again.
+TEST_F(RequestHandlerTest, BuildsNoCatalogueForAServerThatStops) {
+  state().reload(context);
+  state().set_stopping();
+  v1::Envelope tag = request();
+  tag.mutable_scene_tag()->set_name("room");
+  (*tag.mutable_scene_tag()->mutable_tags())["floor"] = "2";
+  const v1::Envelope reply = ask(tag);
+  EXPECT_EQ(reply.error().code(), v1::CODE_CANCELLED);
+  EXPECT_THAT(reply.error().message(), HasSubstr("the change is stored"));
+  EXPECT_EQ(Store::open_read_only(options.db).show("room").tags.at("floor"), "2");
 }
 
 TEST_F(RequestHandlerTest, ReloadFindsWhatAnotherProgramHasAdded) {

@@ -122,11 +122,35 @@ TEST(Server, TellsAClientTooManyWhyAndCloses) {
     if (client.hello().has_hello_reply()) clients.push_back(std::move(client));
   }
   TestClient third = TestClient::tcp(running.server->port());
-  const v1::Envelope reply = third.receive().value();
+  const v1::Envelope reply = third.hello();
   EXPECT_EQ(reply.error().code(), v1::CODE_RESOURCE_EXHAUSTED);
   EXPECT_THAT(reply.error().message(), HasSubstr("--max-connections"));
   EXPECT_TRUE(third.closed_by_server());
   EXPECT_TRUE(wait_until_loaded(clients[0]).ready());
+}
+
+// Strangers used to take the places of clients for ten seconds each.
+TEST(Server, LeavesClientsTheirPlacesWhateverStrangersDo) {
+  RunningServer running({.max_connections = 2, .max_strangers = 3});
+  std::vector<TestClient> strangers;
+  for (int i = 0; i < 12; ++i) strangers.push_back(TestClient::tcp(running.server->port()));
+  EXPECT_TRUE(strangers.front().closed_by_server()) << "the oldest makes room";
+  TestClient client = TestClient::tcp(running.server->port());
+  EXPECT_TRUE(client.hello().has_hello_reply());
+  for (int i = 0; i < 12; ++i) strangers.push_back(TestClient::tcp(running.server->port()));
+  EXPECT_TRUE(wait_until_loaded(client).ready()) << "who has said Hello stays";
+}
+
+TEST(Server, RefusesACloudForWhichItHasNoMemory) {
+  RunningServer running({.max_message_bytes = 1 << 20, .memory_budget_bytes = 1 << 20});
+  TestClient client = running.client();
+  v1::Envelope query = query_envelope(1, make_blob());
+  v1::Cloud& cloud = *query.mutable_query()->mutable_clouds(0);
+  cloud.set_points(1'000'000);
+  cloud.set_zstd(true);
+  const v1::Envelope reply = client.call(query);
+  EXPECT_EQ(reply.error().code(), v1::CODE_RESOURCE_EXHAUSTED);
+  EXPECT_THAT(reply.error().message(), HasSubstr("limit of 1048576"));
 }
 
 TEST(Server, ServesTheRestWhenASceneIsDamaged) {

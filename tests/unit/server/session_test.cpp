@@ -219,12 +219,26 @@ TEST(Session, SaysGoAwayToTheIdle) {
   EXPECT_TRUE(idle.closed_by_server());
 }
 
-TEST(Session, AnswersAClientThatHasEndedItsSending) {
+// A killed process ends its sending just so; its queries used to be computed to their end.
+TEST(Session, StopsTheRequestsOfAClientThatHasEndedItsSending) {
+  RunningServer running({.threads = 1});
+  TestClient client = running.client();
+  for (std::uint64_t id = 1; id <= 20; ++id) client.send(query_envelope(id, make_view()));
+  client.end_sending();
+  EXPECT_TRUE(client.closed_by_server());
+  TestClient other = running.client();
+  EXPECT_TRUE(other.call(query_envelope(1, make_blob())).has_query_result())
+      << "the line is free: those before were thrown away";
+  running.server.reset();
+  EXPECT_THAT(running.log_text.str(), HasSubstr("error=CANCELLED"));
+}
+
+TEST(Session, SendsWhatWasReadyToAClientThatHasEndedItsSending) {
   RunningServer running;
   TestClient client = running.client();
-  client.send(query_envelope(1, make_blob()));
+  client.send(health_envelope(1));
   client.end_sending();
-  EXPECT_TRUE(client.answer_to(1).has_query_result());
+  EXPECT_TRUE(client.answer_to(1).has_health_reply());
   EXPECT_TRUE(client.closed_by_server());
 }
 

@@ -1,6 +1,9 @@
 #include "server/work_queue.hpp"
 
 #include <future>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -29,6 +32,21 @@ TEST(WorkQueue, TurnsWorkAwayWhenItsLineIsFull) {
   queue.join();
   EXPECT_EQ(done, 2);
   EXPECT_EQ(queue.waiting(), 0U);
+}
+
+// An exception on a pool's thread would end the whole process.
+TEST(WorkQueue, GoesOnAfterWorkThatThrows) {
+  std::vector<std::string> failures;
+  std::atomic<int> done{0};
+  WorkQueue queue(1, 5, [&](const std::string& what) { failures.push_back(what); });
+  ASSERT_TRUE(queue.post([] { throw std::runtime_error("no luck"); }));
+  ASSERT_TRUE(queue.post([] { throw 3; }));
+  ASSERT_TRUE(queue.post([&] { ++done; }));
+  queue.join();
+  EXPECT_EQ(done, 1);
+  EXPECT_EQ(failures, (std::vector<std::string>{"no luck", "an exception of no known kind"}));
+  EXPECT_EQ(queue.waiting(), 0U);
+  EXPECT_EQ(queue.running(), 0U);
 }
 
 TEST(MemoryBudget, GivesOutNoMoreThanItHasAndTakesItBack) {
