@@ -1,12 +1,9 @@
 #include "client/correspondences_csv.hpp"
 
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <fstream>
 
-#include "engine/base/error.hpp"
+#include "cli/write_file.hpp"
 
 namespace landmarkdb::client {
 namespace {
@@ -44,16 +41,7 @@ std::string correspondences_csv(const std::vector<CorrespondenceRecord>& pairs) 
 
 void write_correspondences(const std::filesystem::path& path,
                            const std::vector<CorrespondenceRecord>& pairs) {
-  errno = 0;
-  std::ofstream file(path, std::ios::binary);
-  file << correspondences_csv(pairs);
-  file.close();
-  if (!file) {
-    const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
-    throw Error(ErrorCode::kResourceExhausted,
-                path.string() + ": the correspondences cannot be written" + why,
-                "--correspondences");
-  }
+  cli::write_file(path, correspondences_csv(pairs), "--correspondences");
 }
 
 }  // namespace landmarkdb::client

@@ -1,6 +1,11 @@
 #include "client/correspondences_csv.hpp"
 
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include "engine/base/error.hpp"
 
@@ -35,6 +40,20 @@ TEST(WriteCorrespondences, NamesTheFileThatCannotBeWritten) {
     EXPECT_EQ(error.code(), ErrorCode::kResourceExhausted);
     EXPECT_THAT(error.what(), ::testing::HasSubstr("/nowhere/pairs.csv"));
   }
+}
+
+// Stopped in the middle, the file that was there used to be lost.
+TEST(WriteCorrespondences, LeavesTheFileThatWasThereToItsReaders) {
+  std::string name = (std::filesystem::temp_directory_path() / "landmarkdb-XXXXXX").string();
+  ::close(::mkstemp(name.data()));
+  std::ofstream(name) << "before";
+  std::ifstream reader(name);
+  write_correspondences(name, {pair("lobby", "")});
+  std::string text;
+  reader >> text;
+  EXPECT_EQ(text, "before");
+  EXPECT_GT(std::filesystem::file_size(name), 100U);
+  std::filesystem::remove(name);
 }
 
 TEST(WriteCorrespondences, NoticesAFullDisk) {
