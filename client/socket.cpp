@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -22,6 +23,8 @@ namespace {
 
 // How soon a stop request is seen; a person does not notice it.
 constexpr std::chrono::milliseconds kTick{50};
+// A server accepts thousands a second: soon enough, and no load for it.
+constexpr std::chrono::milliseconds kConnectAgain{10};
 
 struct AddressListDeleter {
   void operator()(addrinfo* list) const { freeaddrinfo(list); }
@@ -78,20 +81,30 @@ void Socket::fail_to_connect(int error) const {
               "--server");
 }
 
+void Socket::give_up_connecting(Ready why) const {
+  if (why == Ready::kStopped) {
+    throw Error(ErrorCode::kCancelled, "interrupted while connecting to " + name_);
+  }
+  throw Error(ErrorCode::kUnavailable,
+              "no landmarkdb server answers at " + name_ + " within the time allowed",
+              "--server");
+}
+
 // Connects fd_; throws where that fails.
 void Socket::connect_to(const void* address, unsigned length, const WaitLimits& limits) {
-  if (::connect(fd_, static_cast<const sockaddr*>(address), length) == 0) return;
-  if (errno != EINPROGRESS && errno != EAGAIN && errno != EINTR) fail_to_connect(errno);
-  switch (wait(POLLOUT, limits)) {
-    case Ready::kYes:
-      break;
-    case Ready::kStopped:
-      throw Error(ErrorCode::kCancelled, "interrupted while connecting to " + name_);
-    case Ready::kDeadline:
-      throw Error(ErrorCode::kUnavailable,
-                  "no landmarkdb server answers at " + name_ + " within the time allowed",
-                  "--server");
+  while (::connect(fd_, static_cast<const sockaddr*>(address), length) != 0) {
+    if (errno == EINPROGRESS || errno == EINTR) break;
+    if (errno != EAGAIN) fail_to_connect(errno);
+    // A Unix socket whose backlog is full (or TCP without a free local port): no connection is
+    // under way, so there is nothing to poll for.
+    if (limits.stop.stop_requested()) give_up_connecting(Ready::kStopped);
+    if (limits.deadline && std::chrono::steady_clock::now() >= *limits.deadline) {
+      give_up_connecting(Ready::kDeadline);
+    }
+    std::this_thread::sleep_for(kConnectAgain);
   }
+  const Ready ready = wait(POLLOUT, limits);
+  if (ready != Ready::kYes) give_up_connecting(ready);
   int error = 0;
   socklen_t size = sizeof error;
   if (getsockopt(fd_, SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;

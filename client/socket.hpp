@@ -46,6 +46,7 @@ class Socket {
   enum class Ready { kYes, kDeadline, kStopped };
   Ready wait(short events, const WaitLimits& limits) const;
   void connect_to(const void* address, unsigned length, const WaitLimits& limits);
+  [[noreturn]] void give_up_connecting(Ready why) const;
   void connect_unix(const std::string& path, const WaitLimits& limits);
   void connect_tcp(const Address& address, const WaitLimits& limits);
   [[noreturn]] void fail_to_connect(int error) const;
