@@ -9,6 +9,7 @@
 #include <CLI/Error.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli/table.hpp"
 #include "cli/usage_error.hpp"
 #include "engine/base/error.hpp"
 
@@ -72,7 +73,7 @@ int report(const CLI::App& app, const Failure& failure, bool json) {
     std::cout << json_error(failure.code, failure.message, failure.field, failure.status)
               << std::endl;
   } else {
-    std::cerr << app.get_name() << ": " << one_line(failure.message) << std::endl;
+    std::cerr << app.get_name() << ": " << printable(one_line(failure.message)) << std::endl;
   }
   return failure.status;
 }

@@ -10,6 +10,8 @@
 
 #include <unistd.h>
 
+#include "cli/table.hpp"
+
 namespace landmarkdb::cli {
 namespace {
 
@@ -103,7 +105,7 @@ std::function<void(const Progress&)> ProgressBar::callback() {
 }
 
 void ProgressBar::start_stage(const Progress& progress, Clock::time_point now) {
-  stage_ = progress.stage;
+  stage_ = printable(progress.stage);  // may come from a server
   stage_first_ = progress.done;
   stage_start_ = now;
 }
@@ -111,7 +113,7 @@ void ProgressBar::start_stage(const Progress& progress, Clock::time_point now) {
 void ProgressBar::update(const Progress& progress) {
   if (style_ == ProgressStyle::kNone) return;
   const Clock::time_point now = now_();
-  const bool new_stage = progress.stage != stage_;
+  const bool new_stage = printable(progress.stage) != stage_;
   if (new_stage) start_stage(progress, now);
   if (style_ == ProgressStyle::kLines) {
     if (now - last_output_ >= kLineInterval) print_line(progress, now);

@@ -16,19 +16,48 @@ std::size_t width_of(const std::string& text) {
   }));
 }
 
+// How many bytes the character at the start of `text` has, if a terminal may see them: 0 for what
+// is no UTF-8 (to a terminal that speaks another code any byte from 0x80 on may be a control) and
+// for control characters, those of U+0080 to U+009F among them.
+std::size_t shown_bytes(std::string_view text) {
+  const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80U) return byte(0) < 0x20U || byte(0) == 0x7FU ? 0 : 1;
+  const std::size_t length = byte(0) >= 0xC2U && byte(0) < 0xE0U   ? 2
+                             : byte(0) >= 0xE0U && byte(0) < 0xF0U ? 3
+                             : byte(0) >= 0xF0U && byte(0) < 0xF5U ? 4
+                                                                   : 0;
+  if (length == 0 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0U) != 0x80U) return 0;
+  }
+  return length == 2 && byte(0) == 0xC2U && byte(1) < 0xA0U ? 0 : length;
+}
+
 }  // namespace
 
-std::string printable(std::string text) {
-  for (char& c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20U || byte == 0x7FU) c = '?';
+std::string printable(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t bytes = shown_bytes(text);
+    out += bytes == 0 ? std::string_view("?") : text.substr(0, bytes);
+    text.remove_prefix(std::max<std::size_t>(bytes, 1));
   }
-  return text;
+  return out;
+}
+
+std::string printable_lines(std::string_view text) {
+  std::string out;
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    out += printable(text.substr(0, end)) + '\n';
+    text.remove_prefix(end + 1);
+  }
+  return out + printable(text);
 }
 
 void Table::add(std::vector<std::string> cells) {
   assert(cells.size() == columns_.size() && "a row has a cell for each column");
-  for (std::string& cell : cells) cell = printable(std::move(cell));
+  for (std::string& cell : cells) cell = printable(cell);
   rows_.push_back(std::move(cells));
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace landmarkdb::cli {
@@ -30,8 +31,11 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
-// Control characters replaced by '?'.
-std::string printable(std::string text);
+// Text from a database, a file or a server, made safe for a terminal: control characters, and bytes
+// that are no UTF-8, replaced by '?'.
+std::string printable(std::string_view text);
+// The same, but lines stay lines.
+std::string printable_lines(std::string_view text);
 
 // "12.3 MiB"
 std::string bytes_text(std::uint64_t bytes);

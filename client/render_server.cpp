@@ -88,7 +88,8 @@ Json health_json(const Health& health) {
 }
 
 std::string health_text(const Health& health) {
-  std::string text = health.status + (health.ready ? ", ready" : ", not ready") + '\n';
+  std::string text =
+      cli::printable(health.status) + (health.ready ? ", ready" : ", not ready") + '\n';
   for (const std::string& problem : health.problems) {
     text += "  " + cli::printable(problem) + '\n';
   }

@@ -71,7 +71,7 @@ std::string_view explain(std::string_view warning) {
       {"units_suspect", "the cloud's size is unusual for metres; check --units"},
       {"low_overlap", "only a part of the cloud lies on the scene"},
       {"planar_scene", "mostly one plane: the pose can slide along it"},
-      {"density_mismatch", "much coarser or finer than the stored scene"},
+      {"density_mismatch", "much coarser than what the scene was described at"},
       {"correspondences_cut", "too many pairs to send; each keypoint's farthest are left out"},
       {"gravity_disagrees", "the pose tilts the scene against --up"},
       {"normals_unoriented", "no viewpoint known; normals may point either way"},
@@ -106,7 +106,7 @@ std::string footer_text(const QueryResult& result) {
       t.icp.count(),
       t.verify.count());
   for (const std::string& warning : result.warnings) {
-    out += "  warning     " + warning;
+    out += "  warning     " + cli::printable(warning);
     if (const std::string_view meaning = explain(warning); !meaning.empty()) {
       out += ": " + std::string(meaning);
     }

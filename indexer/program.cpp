@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/table.hpp"
 #include "cli/usage_error.hpp"
 
 namespace landmarkdb::indexer {
@@ -25,12 +26,12 @@ void Program::print(const nlohmann::ordered_json& object, const std::string& tex
     // File names need not be UTF-8; what is not comes out as U+FFFD.
     std::cout << object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
   } else {
-    std::cout << text;
+    std::cout << cli::printable_lines(text);
   }
 }
 
 void Program::note(const std::string& sentence) const {
-  if (!quiet) std::cerr << sentence << '\n';
+  if (!quiet) std::cerr << cli::printable_lines(sentence) << '\n';
 }
 
 }  // namespace landmarkdb::indexer

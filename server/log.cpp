@@ -9,6 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/table.hpp"
+
 namespace landmarkdb {
 
 namespace {
@@ -81,7 +83,7 @@ std::string Logger::line(LogLevel level,
   }
   line = timestamp() + " " + std::string(log_level_name(level)) + " " + message_text(message);
   for (const LogField& field : fields) line += " " + field.key + "=" + value_text(field, false);
-  return line + "\n";
+  return cli::printable(line) + "\n";
 }
 
 void Logger::write(LogLevel level, std::string_view message, const std::vector<LogField>& fields) {

@@ -62,6 +62,17 @@ TEST(RunMain, PrintsAnErrorAsOneLineAndMapsItsCode) {
   EXPECT_EQ(outcome.err, "prog: scene 42: descriptors are cut off\n");
 }
 
+// A message may hold a name that a server or a file has sent.
+TEST(RunMain, LetsNoMessageSteerTheTerminal) {
+  const Outcome outcome = run({"go"}, []() -> int {
+    throw Error(ErrorCode::kNotFound, "there is no scene '\033]0;mine\007\xC2\x9B'");
+  });
+  EXPECT_EQ(outcome.err,
+            "prog: there is no scene '?]0;mine?"
+            "?"
+            "?'\n");
+}
+
 TEST(RunMain, PrintsAnErrorAsJsonWhenAskedFor) {
   const Outcome outcome = run({"go", "--json"}, []() -> int {
     throw Error(ErrorCode::kNotFound, "no scene \"x\"", "name");

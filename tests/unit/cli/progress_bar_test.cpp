@@ -89,6 +89,14 @@ TEST(ProgressBar, DrawsANewStageAtOnce) {
   EXPECT_THAT(fixture.out.str(), HasSubstr("describe"));
 }
 
+TEST(ProgressBar, LetsNoStageNameSteerTheTerminal) {
+  std::ostringstream out;
+  ProgressBar bar(ProgressStyle::kBar, out);
+  bar.update({"\033[2Jmatch", 1, 2});
+  EXPECT_EQ(out.str().find("\033[2J"), std::string::npos);
+  EXPECT_NE(out.str().find("?[2Jmatch"), std::string::npos);
+}
+
 TEST(ColourWanted, RespectsNoColor) {
   ::setenv("NO_COLOR", "1", 1);
   EXPECT_FALSE(colour_wanted());

@@ -28,6 +28,24 @@ TEST(Table, LetsNoControlCharacterThrough) {
   EXPECT_EQ(table.text(), "NAME\n?[2Jgone?\n");
 }
 
+TEST(Printable, LeavesTextAsItIsAndNoControlIn) {
+  EXPECT_EQ(printable("Bühne 日本 \xF0\x9F\x9A\xAA"), "Bühne 日本 \xF0\x9F\x9A\xAA");
+  EXPECT_EQ(printable("a\tb\x7F\x1B]0;title\x07"), "a?b??]0;title?");
+  EXPECT_EQ(printable("\xC2\x9B[2J"),
+            "?"
+            "?[2J")
+      << "U+009B starts a command, too";
+  EXPECT_EQ(printable("\x9B[2J"), "?[2J");
+  EXPECT_EQ(printable("\xE6\x97"), "??") << "cut off in a character";
+  EXPECT_EQ(printable("\xC0\x9B\xFF"), "???");
+  EXPECT_EQ(printable(""), "");
+}
+
+TEST(Printable, KeepsLinesWhereTheyAreMeant) {
+  EXPECT_EQ(printable_lines("a\n\033b\n\nc"), "a\n?b\n\nc");
+  EXPECT_EQ(printable_lines("a\r\n"), "a?\n");
+}
+
 TEST(Table, PrintsOnlyTheHeaderWithoutRows) {
   EXPECT_EQ(Table({{"NAME"}, {"N"}}).text(), "NAME  N\n");
 }

@@ -62,6 +62,7 @@ TEST(QueryText, LetsNoNameSteerTheTerminal) {
   QueryResult result;
   result.status = QueryStatus::kLocalized;
   result.hypotheses = {in_scene("a\033[2J", 0.0)};
+  result.warnings = {"odd\033[2J"};
   EXPECT_THAT(query_text(result), Not(HasSubstr("\033")));
 }
 
