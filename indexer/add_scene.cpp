@@ -1,6 +1,8 @@
 #include "indexer/add_scene.hpp"
 
+#include <cstdint>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "indexer/new_database.hpp"
@@ -17,22 +19,43 @@ void set_viewpoint(const Eigen::Vector3d& viewpoint_m, PointCloud& cloud) {
   cloud.viewpoint_index.clear();
 }
 
+// Zero for what is not there: reading it will say so.
+std::uint64_t bytes_of(const std::string& path) {
+  std::error_code failed;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
+  return failed ? 0 : bytes;
+}
+
+// The same context, where the bytes of one file are counted after those `before` it.
+RunContext one_of_many(const RunContext& context, std::uint64_t before, std::uint64_t total) {
+  RunContext one = context;
+  if (!context.progress) return one;
+  one.progress = [&context, before, total](const Progress& progress) {
+    context.progress(progress.stage == "read"
+                         ? Progress{progress.stage, before + progress.done, total}
+                         : progress);
+  };
+  return one;
+}
+
 }  // namespace
 
 std::vector<Scan> read_scans(const AddRequest& request, const RunContext& context) {
   const ReadOptions read_options{.units = request.units};
   std::vector<Scan> scans;
   scans.reserve(request.clouds.size());
+  std::uint64_t total = 0;
+  for (const std::string& cloud : request.clouds) total += bytes_of(cloud);
+  std::uint64_t before = 0;
   for (std::size_t i = 0; i < request.clouds.size(); ++i) {
-    context.report("read", i, request.clouds.size());
     Scan scan;
-    scan.cloud = read_cloud(request.clouds[i], read_options);
+    scan.cloud = read_cloud(request.clouds[i], read_options, one_of_many(context, before, total));
+    before += bytes_of(request.clouds[i]);
     if (!request.poses.empty()) scan.T_scene_cloud = request.poses[i];
     if (!request.viewpoints.empty()) set_viewpoint(request.viewpoints[i], scan.cloud);
     scan.source = std::filesystem::path(request.clouds[i]).filename().string();
     scans.push_back(std::move(scan));
   }
-  context.report("read", request.clouds.size(), request.clouds.size());
   return scans;
 }
 

@@ -31,7 +31,7 @@ struct AddResult {
 };
 
 // Reads the clouds, turned to metres, each with its pose and viewpoint. Reports the stage "read" in
-// files.
+// bytes of all files together.
 std::vector<Scan> read_scans(const AddRequest& request, const RunContext& context);
 
 // Reads, describes and stores. The database is opened for writing only at the end, and made where

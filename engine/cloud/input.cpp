@@ -42,7 +42,9 @@ void check_count(const Input& input,
   }
 }
 
-FileBytes read_whole_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
+FileBytes read_whole_file(const std::filesystem::path& path,
+                          std::uint64_t max_bytes,
+                          const RunContext& context) {
   const std::string name = path.string();
   struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
@@ -71,7 +73,14 @@ FileBytes read_whole_file(const std::filesystem::path& path, std::uint64_t max_b
     throw Error(ErrorCode::kResourceExhausted,
                 name + ": no memory for its " + std::to_string(size) + " bytes");
   }
-  bytes.size = std::fread(bytes.data.get(), 1, size, file.get());
+  constexpr std::size_t kChunk = std::size_t{16} * 1024 * 1024;  // a tenth of a second of a disk
+  while (bytes.size < size) {
+    context.check("read");
+    const std::size_t wanted = std::min<std::size_t>(kChunk, size - bytes.size);
+    const std::size_t got = std::fread(bytes.data.get() + bytes.size, 1, wanted, file.get());
+    bytes.size += got;
+    if (got < wanted) break;
+  }
   if (bytes.size != size && std::ferror(file.get()) != 0) {
     throw Error(ErrorCode::kInvalidArgument, name + ": cannot be read: " + std::strerror(errno));
   }

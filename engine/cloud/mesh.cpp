@@ -47,10 +47,12 @@ std::uint64_t edge_key(std::uint32_t from, std::uint32_t to) {
 }
 
 // Vertices at one place get one number, so that faces which do not share them (STL) still meet.
-std::vector<std::uint32_t> weld(const Mesh& mesh) {
+std::vector<std::uint32_t> weld(const Input& input, const Mesh& mesh) {
   std::vector<std::uint32_t> order(mesh.vertices.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::uint64_t compared = 0;
   auto less = [&](std::uint32_t a, std::uint32_t b) {
+    input.tick(++compared, input.bytes.size());  // a throw leaves `order` in no order, and unused
     const Eigen::Vector3d& p = mesh.vertices[a];
     const Eigen::Vector3d& q = mesh.vertices[b];
     return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
@@ -66,12 +68,12 @@ std::vector<std::uint32_t> weld(const Mesh& mesh) {
 
 // +1 where the faces of a closed mesh look outwards, -1 inwards, 0 when it is open, wound
 // inconsistently, or not finite.
-double outward_sign(const Mesh& mesh) {
+double outward_sign(const Input& input, const Mesh& mesh) {
   const bool finite = std::all_of(mesh.vertices.begin(),
                                   mesh.vertices.end(),
                                   [](const Eigen::Vector3d& p) { return p.allFinite(); });
   if (!finite) return 0.0;
-  const std::vector<std::uint32_t> place = weld(mesh);
+  const std::vector<std::uint32_t> place = weld(input, mesh);
   std::vector<std::uint64_t> edges, reversed;
   const Eigen::Vector3d centre = mesh.vertices[mesh.triangles[0][0]];
   double volume = 0.0;
@@ -190,18 +192,28 @@ PointCloud sample_mesh(const Input& input, const Mesh& mesh, const ReadOptions& 
   }
   const double each = area_per_sample(input, mesh, total, options);
   if (!(each > 0.0)) refuse(input, "a mesh whose area is too small for double");
-  const double sign = mesh.normals.empty() ? outward_sign(mesh) : 0.0;
+  const double sign = mesh.normals.empty() ? outward_sign(input, mesh) : 0.0;
   const bool colours = mesh.colours.size() == mesh.vertices.size();
   CloudBuilder builder(metres_per(options.units));
   Random random(kSeed);
   double due = random.uniform();  // samples owed to the surface walked so far
-  for (const auto& triangle : mesh.triangles) {
+  std::uint64_t turns = 0;
+  const auto tick = [&](std::size_t triangle) {
+    constexpr std::uint64_t kTurns = 8192;  // about a millisecond
+    if (input.context != nullptr && turns++ % kTurns == 0) {
+      input.context->report("sample", triangle, mesh.triangles.size());
+    }
+  };
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& triangle = mesh.triangles[t];
+    tick(t);
     due += triangle_area(mesh, triangle) / each;
     const double offset_u = random.uniform();
     const double offset_v = random.uniform();
     const auto samples = static_cast<std::uint64_t>(due);
     due -= static_cast<double>(samples);
     for (std::uint64_t k = 0; k < samples && builder.size() < options.max_points; ++k) {
+      tick(t);
       const Barycentric at = spread(k, offset_u, offset_v);
       builder.add_point(blend(mesh.vertices, triangle, at));
       add_normal(builder, mesh, triangle, at, sign);

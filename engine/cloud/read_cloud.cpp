@@ -30,8 +30,9 @@ double metres_per(Units units) {
 
 PointCloud parse_cloud(std::span<const std::byte> bytes,
                        std::string_view name,
-                       const ReadOptions& options) {
-  const Input input{bytes, name};
+                       const ReadOptions& options,
+                       const RunContext& context) {
+  const Input input{bytes, name, &context};
   try {
     switch (recognise_format(input)) {
       case CloudFormat::kPly:
@@ -54,12 +55,14 @@ PointCloud parse_cloud(std::span<const std::byte> bytes,
   refuse(input, "is in no format that can be read");
 }
 
-PointCloud read_cloud(const std::filesystem::path& path, const ReadOptions& options) {
+PointCloud read_cloud(const std::filesystem::path& path,
+                      const ReadOptions& options,
+                      const RunContext& context) {
   constexpr std::uint64_t kMostBytesPerPoint = 512;               // text with many columns
   constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 40U;  // keeps the product in 64 bits
-  const FileBytes file =
-      read_whole_file(path, std::min(options.max_points, kMostPoints) * kMostBytesPerPoint);
-  return parse_cloud(file.span(), path.string(), options);
+  const FileBytes file = read_whole_file(
+      path, std::min(options.max_points, kMostPoints) * kMostBytesPerPoint, context);
+  return parse_cloud(file.span(), path.string(), options, context);
 }
 
 }  // namespace landmarkdb

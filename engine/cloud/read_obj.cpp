@@ -24,6 +24,7 @@ class ObjReader {
     std::string joined;
     std::string_view line;
     while (lines_.next(line)) {
+      input_.tick(lines_.number(), lines_.at());
       if (!line.empty() && line.back() == '\\') line = join(line, joined);
       std::string_view rest = line.substr(0, line.find('#'));
       const std::string_view keyword = take_word(rest);

@@ -179,7 +179,9 @@ PointCloud parse_pcd(const Input& input, const ReadOptions& options) {
   PointReader reader(input, header);
   CloudBuilder builder(metres_per(options.units), header.T_world_sensor);
   builder.reserve(static_cast<std::size_t>(header.points), normals, colours);
+  const std::uint64_t bytes_each = input.bytes.size() / header.points;  // for the progress
   for (std::uint64_t i = 0; i < header.points; ++i) {
+    input.tick(i, i * bytes_each);
     reader.go_to(i);
     builder.add_point(take(reader, roles.position));
     if (normals) builder.add_normal(take(reader, roles.normal));

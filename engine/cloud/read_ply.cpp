@@ -49,6 +49,8 @@ class BodyReader {
     return static_cast<std::uint64_t>(count);
   }
 
+  std::size_t at() const { return at_; }
+
  private:
   [[noreturn]] void refuse_end() const {
     refuse(input_, "PLY data ends early: the header promises more (truncated file?)");
@@ -148,9 +150,12 @@ std::array<std::uint8_t, 3> take_colour(const std::vector<double>& row, const Co
   return colour;
 }
 
-void skip_element(BodyReader& body, const PlyElement& element) {
+void skip_element(const Input& input, BodyReader& body, const PlyElement& element) {
   std::vector<double> row(element.properties.size());
-  for (std::uint64_t i = 0; i < element.count; ++i) read_row(body, element, row);
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    input.tick(i, body.at());
+    read_row(body, element, row);
+  }
 }
 
 std::uint16_t take_viewpoint(const Input& input, double value, std::size_t viewpoints) {
@@ -175,6 +180,7 @@ PointCloud read_points(const Input& input,
   builder.reserve(vertices.count, normals, colours);
   std::vector<double> row(vertices.properties.size());
   for (std::uint64_t i = 0; i < vertices.count; ++i) {
+    input.tick(i, body.at());
     read_row(body, vertices, row);
     builder.add_point(take(row, columns.position));
     if (normals) builder.add_normal(take(row, columns.normal));
@@ -195,6 +201,7 @@ void read_mesh_vertices(const Input& input,
   mesh.vertices.reserve(vertices.count);
   std::vector<double> row(vertices.properties.size());
   for (std::uint64_t i = 0; i < vertices.count; ++i) {
+    input.tick(i, body.at());
     read_row(body, vertices, row);
     mesh.vertices.push_back(take(row, columns.position));
     if (complete(columns.normal)) {
@@ -222,6 +229,7 @@ void read_faces(const Input& input,
                 Mesh& mesh) {
   std::vector<std::uint32_t> corners;
   for (std::uint64_t i = 0; i < faces.count; ++i) {
+    input.tick(i, body.at());
     for (const PlyProperty& property : faces.properties) {
       if (!is_corner_list(property)) {
         body.skip(property.type, property.count_type ? body.next_count(property) : 1);
@@ -268,7 +276,7 @@ PointCloud parse_ply(const Input& input, const ReadOptions& options) {
     } else if (is_faces(element)) {
       read_faces(input, element, vertices->count, body, mesh);
     } else {
-      skip_element(body, element);
+      skip_element(input, body, element);
     }
   }
   return sample_mesh(input, mesh, options);

@@ -64,6 +64,7 @@ PointCloud parse_binary_stl(const Input& input, const ReadOptions& options) {
   mesh.triangles.reserve(static_cast<std::size_t>(triangles));
   const std::byte* at = input.bytes.data() + kHeaderBytes;
   for (std::uint64_t t = 0; t < triangles; ++t, at += kTriangleBytes) {
+    input.tick(t, t * kTriangleBytes);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::byte* corner = at + kNormalBytes + k * kCornerBytes;
       add_corner(mesh,
@@ -81,6 +82,7 @@ PointCloud parse_ascii_stl(const Input& input, const ReadOptions& options) {
   std::string_view line;
   bool ended = false;
   while (lines.next(line)) {
+    input.tick(lines.number(), lines.at());
     std::string_view rest = line;
     const std::string_view keyword = take_word(rest);
     if (keyword == "endsolid") ended = true;

@@ -149,6 +149,7 @@ class TextCloudReader {
     std::string_view line;
     const Splitter splitter(input_, lines_);
     while (lines_.next(line)) {
+      input_.tick(lines_.number(), lines_.at());
       if (is_comment(line)) continue;
       splitter.split(line, words);
       if (words.size() == 1 && start_block(words[0])) continue;

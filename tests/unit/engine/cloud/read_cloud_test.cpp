@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stop_token>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -113,6 +115,61 @@ TEST(ReadCloud, ReadsAFileFromDisk) {
       std::filesystem::path(::testing::TempDir()) / "read_cloud_test.xyz";
   std::ofstream(path) << testing::xyz_text(7);
   EXPECT_EQ(read_cloud(path, {}).size(), 7U);
+  std::filesystem::remove(path);
+}
+
+// Ctrl-C while a large file was read used to wait for its end.
+TEST(ReadCloud, StopsInTheMiddleOfAFileOfAnyFormat) {
+  constexpr int kPoints = 40'000;
+  const std::vector<testing::NamedFile> files = {{"a.ply", testing::ply_ascii(kPoints)},
+                                                 {"b.ply", testing::ply_binary(kPoints, false)},
+                                                 {"a.pcd", testing::pcd_ascii(kPoints)},
+                                                 {"b.pcd", testing::pcd_binary(kPoints)},
+                                                 {"a.xyz", testing::xyz_text(kPoints)},
+                                                 {"a.pts", testing::pts_text(kPoints)}};
+  for (const testing::NamedFile& file : files) {
+    std::stop_source stop;
+    std::vector<Progress> seen;
+    RunContext context;
+    context.stop = stop.get_token();
+    context.progress = [&](const Progress& progress) {
+      seen.push_back(progress);
+      if (progress.done > progress.total / 2) stop.request_stop();
+    };
+    try {
+      parse_cloud(testing::as_bytes(file.bytes), file.name, {}, context);
+      ADD_FAILURE() << file.name << " was read to its end";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kCancelled) << file.name;
+    }
+    ASSERT_GE(seen.size(), 2U) << file.name;
+    EXPECT_EQ(seen.back().stage, "read");
+    EXPECT_EQ(seen.back().total, file.bytes.size());
+    EXPECT_LT(seen.back().done, file.bytes.size()) << file.name;
+  }
+}
+
+TEST(ReadCloud, StopsWhileAMeshIsSampled) {
+  std::stop_source stop;
+  RunContext context;
+  context.stop = stop.get_token();
+  std::uint64_t reports = 0;
+  context.progress = [&](const Progress& progress) {
+    if (progress.stage == "sample" && ++reports == 2) stop.request_stop();
+  };
+  const ReadOptions fine{.mesh_spacing_m = 0.001};
+  EXPECT_THROW(parse_cloud(testing::as_bytes(testing::obj_cube()), "a.obj", fine, context), Error);
+  EXPECT_EQ(reports, 2U);
+}
+
+TEST(ReadCloud, ReadsNothingOnceItShallStop) {
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / "stopped_cloud.xyz";
+  std::ofstream(path) << testing::xyz_text(7);
+  std::stop_source stop;
+  stop.request_stop();
+  RunContext context;
+  context.stop = stop.get_token();
+  EXPECT_THROW(read_cloud(path, {}, context), Error);
   std::filesystem::remove(path);
 }
 
