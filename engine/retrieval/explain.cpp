@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <utility>
 
 #include "engine/geometry/pose.hpp"
@@ -159,8 +160,9 @@ std::string rival_text(std::span<const ExplainedCandidate> candidates) {
       " explains the cloud about as well: quality %.3f against %.3f", rival->quality, best.quality);
   if (!rival->distance_m) return "rival '" + rival->scene + "'" + lead;
   return "a rival in '" + best.scene + "', " +
-         print(
-             "%.2f m and %.0f deg away,", *rival->distance_m, *rival->turn_rad * 180.0 / EIGEN_PI) +
+         print("%.2f m and %.0f deg away,",
+               *rival->distance_m,
+               *rival->turn_rad * 180.0 / std::numbers::pi) +
          lead;
 }
 
