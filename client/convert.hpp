@@ -26,6 +26,7 @@ v1::Landmark to_proto(const Landmark& landmark);
 // another length, a status without a number).
 QueryResult from_proto(const v1::QueryResult& result);
 Explanation from_proto(const v1::Explanation& explanation);
+SceneView from_proto(const v1::SceneView& view);
 SceneInfo from_proto(const v1::SceneInfo& scene);
 Stats from_proto(const v1::StatsReply& stats);
 Health from_proto(const v1::HealthReply& health);

@@ -144,6 +144,9 @@ QueryResult from_proto(const v1::QueryResult& result) {
   for (const v1::Correspondence& pair : result.correspondences()) {
     out.correspondences.push_back(correspondence(pair));
   }
+  for (const v1::SceneView& view : result.scene_views()) {
+    out.scene_views.push_back(from_proto(view));
+  }
   if (result.has_explanation()) out.explanation = from_proto(result.explanation());
   out.timings = timings(result.timing());
   return out;

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "client/convert.hpp"
+#include "engine/geometry/quantise.hpp"
 
 namespace landmarkdb::client {
 namespace {
@@ -76,6 +78,29 @@ Explanation from_proto(const v1::Explanation& explanation) {
   for (const v1::Remedy& one : explanation.remedies()) {
     out.remedies.push_back({.option = one.option(), .value = one.value(), .effect = one.effect()});
   }
+  return out;
+}
+
+SceneView from_proto(const v1::SceneView& view) {
+  constexpr std::uint64_t kBytesAPoint = 6;
+  const v1::Cloud& cloud = view.cloud();
+  if (cloud.encoding() != v1::POINT_ENCODING_INT16 || cloud.zstd() ||
+      cloud.points() > kMostSceneViewPoints ||
+      cloud.xyz().size() != kBytesAPoint * cloud.points() || !std::isfinite(cloud.scale_m())) {
+    throw Error(ErrorCode::kInternal,
+                "the server's scene view has " + std::to_string(cloud.xyz().size()) +
+                    " bytes for " + std::to_string(cloud.points()) +
+                    " points, want 6 a point, 16-bit and not compressed, at most " +
+                    std::to_string(kMostSceneViewPoints) + " points");
+  }
+  const auto vector = [](const v1::Vector3& v) { return Eigen::Vector3d(v.x(), v.y(), v.z()); };
+  SceneView out;
+  out.points = dequantise({vector(cloud.offset_m()), cloud.scale_m(), cloud.xyz()});
+  out.origin = vector(cloud.origin_m());
+  out.scene_points = view.scene_points();
+  out.spacing_m = view.spacing_m();
+  out.whole = view.whole();
+  if (view.has_up()) out.up = vector(view.up());
   return out;
 }
 

@@ -127,6 +127,7 @@ v1::QueryOptions to_proto(const QueryOptions& options) {
   out.set_seed(options.seed);
   out.set_want_correspondences(options.want_correspondences);
   out.set_explain(options.explain);
+  out.set_want_scene_points(options.want_scene_points);
   return out;
 }
 

@@ -1,6 +1,10 @@
 #include "server/convert_explanation.hpp"
 
+#include <utility>
+
 #include "engine/geometry/pose.hpp"
+#include "engine/geometry/quantise.hpp"
+#include "server/convert_cloud.hpp"
 
 namespace landmarkdb {
 
@@ -72,6 +76,23 @@ v1::Explanation to_proto(const Explanation& explanation) {
     one.set_value(remedy.value);
     one.set_effect(remedy.effect);
   }
+  return out;
+}
+
+v1::SceneView to_proto(const SceneView& view) {
+  v1::SceneView out;
+  QuantisedPoints points = quantise(view.points);
+  v1::Cloud& cloud = *out.mutable_cloud();
+  cloud.set_encoding(v1::POINT_ENCODING_INT16);
+  cloud.set_points(view.points.size());
+  cloud.set_xyz(std::move(points.bytes));
+  cloud.set_scale_m(points.scale_m);
+  *cloud.mutable_offset_m() = to_proto(points.offset_m);
+  *cloud.mutable_origin_m() = to_proto(view.origin);
+  out.set_scene_points(view.scene_points);
+  out.set_spacing_m(view.spacing_m);
+  out.set_whole(view.whole);
+  if (view.up) *out.mutable_up() = to_proto(*view.up);
   return out;
 }
 

@@ -276,6 +276,7 @@ QueryOptions from_proto(const v1::QueryOptions& message) {
   if (message.has_seed()) options.seed = message.seed();
   options.want_correspondences = message.want_correspondences();
   options.explain = message.explain();
+  options.want_scene_points = message.want_scene_points();
   return options;
 }
 
@@ -303,6 +304,7 @@ v1::QueryResult to_proto(const QueryResult& result) {
     pair.set_distance(record.distance);
     pair.set_dropped_by(record.dropped_by);
   }
+  for (const SceneView& view : result.scene_views) *message.add_scene_views() = to_proto(view);
   if (result.explanation) *message.mutable_explanation() = to_proto(*result.explanation);
   return message;
 }

@@ -15,6 +15,7 @@
 #include "engine/retrieval/level.hpp"
 #include "engine/retrieval/list_correspondences.hpp"
 #include "engine/retrieval/query_view.hpp"
+#include "engine/retrieval/scene_view.hpp"
 #include "engine/retrieval/search.hpp"
 #include "engine/retrieval/verdict.hpp"
 
@@ -47,6 +48,11 @@ void check_options(const QueryOptions& options) {
     refuse(
         "top",
         "top is " + std::to_string(options.top) + ", want 1 to " + std::to_string(kMostHypotheses));
+  }
+  if (options.want_scene_points > kMostSceneViewPoints) {
+    refuse("want_scene_points",
+           "want_scene_points is " + std::to_string(options.want_scene_points) + ", want at most " +
+               std::to_string(kMostSceneViewPoints));
   }
   if (options.up && !(options.up->allFinite() && options.up->norm() > 0.0)) {
     refuse("up", "the up direction must be finite and longer than zero");
@@ -138,6 +144,11 @@ void fill_hypotheses(const SearchInput& input,
     CorrespondenceList list = list_correspondences(verdict, input, search);
     answer.correspondences = std::move(list.records);
     if (list.cut) answer.warnings.emplace_back("correspondences_cut");
+  }
+  if (input.options.want_scene_points == 0) return;
+  for (std::size_t i = 0; i < std::min(answer.hypotheses.size(), kMostSceneViews); ++i) {
+    answer.scene_views.push_back(
+        make_scene_view(verdict.judged[i], input, search, input.options.want_scene_points));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "engine/base/stage_timings.hpp"
 #include "engine/types/explanation.hpp"
 #include "engine/types/features.hpp"
+#include "engine/types/scene_view.hpp"
 
 namespace landmarkdb {
 
@@ -43,6 +44,8 @@ struct QueryOptions {
   std::uint64_t seed = 1;
   bool want_correspondences = false;  // fill QueryResult::correspondences
   bool explain = false;               // fill QueryResult::explanation
+  // Fill QueryResult::scene_views with up to so many points each; 0: none.
+  std::uint32_t want_scene_points = 0;
 };
 
 enum class QueryStatus { kLocalized, kAmbiguous, kNotFound };
@@ -109,6 +112,7 @@ struct QueryResult {
   std::vector<std::string> warnings;
   std::vector<CorrespondenceRecord> correspondences;
   std::optional<Explanation> explanation;
+  std::vector<SceneView> scene_views;  // one each of the first hypotheses
   StageTimings timings;
 };
 

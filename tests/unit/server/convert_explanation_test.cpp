@@ -83,5 +83,37 @@ TEST(ExplanationOnTheWire, IsRefusedByTheClientWhenAnArrayHasAnotherLength) {
   EXPECT_THROW(client::from_proto(message), Error);
 }
 
+TEST(SceneViewOnTheWire, ArrivesAsItLeftFarFromZero) {
+  SceneView sent;
+  sent.points = {{0, 0, 0}, {1, 2, 3}, {10, 0, -4}};
+  sent.origin = {500'000.125, 5'000'000.25, 3.0};
+  sent.scene_points = 99;
+  sent.spacing_m = 0.05;
+  sent.whole = true;
+  sent.up = Eigen::Vector3d::UnitZ();
+  const SceneView got = client::from_proto(to_proto(sent));
+  ASSERT_EQ(got.points.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT((got.points[i] - sent.points[i]).norm(), 1e-3);
+  EXPECT_EQ(got.origin, sent.origin);
+  EXPECT_EQ(got.scene_points, 99U);
+  EXPECT_EQ(got.spacing_m, 0.05);
+  EXPECT_TRUE(got.whole);
+  EXPECT_EQ(got.up, sent.up);
+}
+
+TEST(SceneViewOnTheWire, IsRefusedByTheClientWhenItsLengthIsWrong) {
+  SceneView view;
+  view.points = {{0, 0, 0}, {1, 2, 3}};
+  v1::SceneView message = to_proto(view);
+  message.mutable_cloud()->set_points(3);
+  EXPECT_THROW(client::from_proto(message), Error);
+  message = to_proto(view);
+  message.mutable_cloud()->set_encoding(v1::POINT_ENCODING_FLOAT32);
+  EXPECT_THROW(client::from_proto(message), Error);
+  message = to_proto(view);
+  message.mutable_cloud()->set_zstd(true);
+  EXPECT_THROW(client::from_proto(message), Error);
+}
+
 }  // namespace
 }  // namespace landmarkdb
