@@ -173,10 +173,17 @@ ForAndAgainst weigh(const ExplainedCandidate& candidate) {
   const auto add = [](std::string& list, const std::string& item) {
     list += (list.empty() ? "" : ", ") + item;
   };
+  std::vector<ConfidenceTerm> by_worth = candidate.terms;
+  std::stable_sort(by_worth.begin(), by_worth.end(), [](const auto& a, const auto& b) {
+    return a.worth > b.worth;
+  });
+  for (const ConfidenceTerm& term : by_worth) {
+    if (term.worth < kWorthAWord) continue;
+    add(words.spoke_for, term.name + print(" %.3f (+%.1f)", term.value, term.worth));
+  }
   for (const ConfidenceTerm& term : candidate.terms) {
-    const std::string figure = term.name + print(" %.3f", term.value);
-    if (term.worth >= kWorthAWord) add(words.spoke_for, figure + print(" (+%.1f)", term.worth));
-    if (term.cost >= kWorthAWord) add(words.spoke_against, figure + print(" (-%.1f)", term.cost));
+    if (term.cost < kWorthAWord) continue;
+    add(words.spoke_against, term.name + print(" %.3f (-%.1f)", term.value, term.cost));
   }
   if (words.spoke_for.empty()) words.spoke_for = "nothing";
   if (words.spoke_against.empty()) words.spoke_against = "nothing";
