@@ -9,15 +9,20 @@
 #include "cli/help.hpp"
 #include "cli/usage_error.hpp"
 #include "cli/values.hpp"
+#include "cli/write_file.hpp"
 #include "client/choices.hpp"
 #include "client/correspondences_csv.hpp"
 #include "client/load_cloud.hpp"
 #include "client/render_json.hpp"
 #include "client/render_text.hpp"
+#include "client/report/report.hpp"
 #include "client/session.hpp"
 
 namespace landmarkdb::client {
 namespace {
+
+// Of the scene, for a report: the page has 400 kB of them and is drawn in a blink.
+constexpr std::uint32_t kReportPoints = 40'000;
 
 const std::vector<cli::Example> kExamples = {
     {"landmarkdb query view.ply", "which stored place is this, and where in it was the sensor"},
@@ -25,6 +30,7 @@ const std::vector<cli::Example> kExamples = {
      "the same for a depth image, for scripts"},
     {"landmarkdb query scan.pcd --scene lobby --up 0,0,1 --correspondences pairs.csv",
      "one scene only, gravity known, every pair written down"},
+    {"landmarkdb query view.ply --report where.html", "a page that shows the cloud in the place"},
     {"landmarkdb query view.ply --explain", "which step lost it, and what would have helped"},
 };
 
@@ -61,6 +67,8 @@ void add_answer_options(CLI::App& app, QueryArguments& a) {
   app.add_option("--prior-radius", a.prior_radius, "How far from the prior it may be, in metres")
       ->type_name("M");
   app.add_option("--correspondences", a.correspondences, "Write every putative pair as CSV")
+      ->type_name("FILE");
+  app.add_option("--report", a.report, "Write a page that shows the answer: one HTML file")
       ->type_name("FILE");
   app.add_flag("--explain",
                a.explain,
@@ -135,8 +143,10 @@ QueryOptions query_options(const QueryArguments& a) {
   options.solver = a.solver == "pnp" ? Solver::kPnp : Solver::kSimilarity;
   options.estimate_scale = a.scale;
   options.seed = a.seed;
-  options.want_correspondences = !a.correspondences.empty();
-  options.explain = a.explain;
+  const bool report = !a.report.empty();
+  options.want_correspondences = report || !a.correspondences.empty();
+  options.explain = report || a.explain;
+  if (report) options.want_scene_points = kReportPoints;
   return options;
 }
 
@@ -149,10 +159,15 @@ int run_query(const QueryArguments& arguments, const Program& program) {
   const PointCloud cloud = load_cloud(arguments.cloud, load);
 
   Session session(program.options);
-  const QueryResult result = session.connect().query(cloud, options, session.context());
+  QueryResult result = session.connect().query(cloud, options, session.context());
   session.finish();
   if (!arguments.correspondences.empty()) {
     write_correspondences(arguments.correspondences, result.correspondences);
+  }
+  if (!arguments.report.empty()) {
+    cli::write_file(
+        arguments.report, report_html({arguments.cloud, cloud, options}, result), "--report");
+    if (!arguments.explain) result.explanation.reset();
   }
   program.print(query_json(result), query_text(result));
   return query_exit_status(result.status);

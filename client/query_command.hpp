@@ -31,6 +31,7 @@ struct QueryArguments {
   bool scale = false;
   std::uint64_t seed = 1;
   std::string correspondences;
+  std::string report;
   bool explain = false;
 };
 

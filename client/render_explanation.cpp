@@ -80,7 +80,8 @@ std::string candidate_text(std::size_t number, const ExplainedCandidate& c) {
     out += print(", %.2f m and %.0f deg from the best", *c.distance_m, *c.turn_rad * kDegrees);
   }
   const ForAndAgainst words = weigh(c);
-  out += "\n     for      " + words.spoke_for + "\n     against  " + words.spoke_against + "\n";
+  out += "\n     for      " + cli::printable(words.spoke_for) + "\n     against  " +
+         cli::printable(words.spoke_against) + "\n";
   return out + "     sure to  " + axes_text(c) + "\n";
 }
 

@@ -65,23 +65,6 @@ std::string details_text(const Hypothesis& h) {
   return out;
 }
 
-// What each warning of the answer means to the person who asked.
-std::string_view explain(std::string_view warning) {
-  constexpr std::pair<std::string_view, std::string_view> kMeanings[] = {
-      {"units_suspect", "the cloud's size is unusual for metres; check --units"},
-      {"low_overlap", "only a part of the cloud lies on the scene"},
-      {"planar_scene", "mostly one plane: the pose can slide along it"},
-      {"density_mismatch", "much coarser than what the scene was described at"},
-      {"correspondences_cut", "too many pairs to send; each keypoint's farthest are left out"},
-      {"gravity_disagrees", "the pose tilts the scene against --up"},
-      {"normals_unoriented", "no viewpoint known; normals may point either way"},
-  };
-  for (const auto& [name, meaning] : kMeanings) {
-    if (name == warning) return meaning;
-  }
-  return {};
-}
-
 std::string footer_text(const QueryResult& result) {
   std::string out =
       print("  query       %llu points, %llu used, %llu invalid, %llu keypoints, seed %llu\n",
@@ -107,7 +90,7 @@ std::string footer_text(const QueryResult& result) {
       t.verify.count());
   for (const std::string& warning : result.warnings) {
     out += "  warning     " + cli::printable(warning);
-    if (const std::string_view meaning = explain(warning); !meaning.empty()) {
+    if (const std::string_view meaning = warning_meaning(warning); !meaning.empty()) {
       out += ": " + std::string(meaning);
     }
     out += "\n";
@@ -116,6 +99,22 @@ std::string footer_text(const QueryResult& result) {
 }
 
 }  // namespace
+
+std::string_view warning_meaning(std::string_view warning) {
+  constexpr std::pair<std::string_view, std::string_view> kMeanings[] = {
+      {"units_suspect", "the cloud's size is unusual for metres; check --units"},
+      {"low_overlap", "only a part of the cloud lies on the scene"},
+      {"planar_scene", "mostly one plane: the pose can slide along it"},
+      {"density_mismatch", "much coarser than what the scene was described at"},
+      {"correspondences_cut", "too many pairs to send; each keypoint's farthest are left out"},
+      {"gravity_disagrees", "the pose tilts the scene against --up"},
+      {"normals_unoriented", "no viewpoint known; normals may point either way"},
+  };
+  for (const auto& [name, meaning] : kMeanings) {
+    if (name == warning) return meaning;
+  }
+  return {};
+}
 
 std::string query_text(const QueryResult& result) {
   std::string out(status_name(result.status));

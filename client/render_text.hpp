@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "engine/types/query.hpp"
 
@@ -10,5 +11,8 @@ namespace landmarkdb::client {
 // chain, counts, fit, timings, warnings. All poses when ambiguous; the reason and a hint when not
 // found; the explanation, where there is one. Ends with a newline.
 std::string query_text(const QueryResult& result);
+
+// What a warning of the answer means to the person who asked; empty for one it does not know.
+std::string_view warning_meaning(std::string_view warning);
 
 }  // namespace landmarkdb::client

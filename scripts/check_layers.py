@@ -15,6 +15,7 @@ RETRIEVAL = CLOUD + ["engine/features", "engine/matching", "engine/registration"
 ALLOWED = {
     "proto": [],
     "schema": [],
+    "web": [],
     "engine/base": [],
     "engine/types": BASE,
     "engine/geometry": TYPES,

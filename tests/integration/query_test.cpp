@@ -214,5 +214,23 @@ TEST(Query, AsksOneSceneWherePeopleNameIt) {
   EXPECT_THAT(unknown.out, ::testing::HasSubstr("attic"));
 }
 
+TEST(Query, ExplainsItsAnswerAndWritesAPageWhenAsked) {
+  ServerProcess server(site().db);
+  const Eigen::Isometry3d T = make_view_pose(site().elsewhere, 1);
+  const std::string cloud = site().view("explained", site().elsewhere, T);
+  const std::string page = site().folder / "page.html";
+  const Outcome outcome = server.client({"--json", "query", cloud, "--explain", "--report", page});
+  ASSERT_THAT(outcome.status, AnyOf(3, 4)) << outcome.err;
+  const json explain = outcome.json()["explain"];
+  EXPECT_EQ(explain["funnel"][0]["step"], "points");
+  EXPECT_EQ(explain["funnel"][0]["left"], outcome.json()["query"]["points"]);
+  EXPECT_FALSE(explain["candidates"].empty());
+  EXPECT_TRUE(explain["lost_at"].is_string());
+  std::ifstream file(page);
+  const std::string html((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_THAT(html, ::testing::EndsWith("</html>\n"));
+  EXPECT_FALSE(server.client({"--json", "query", cloud}).json().contains("explain"));
+}
+
 }  // namespace
 }  // namespace landmarkdb::testing
