@@ -5,6 +5,7 @@
 
 #include "engine/geometry/pose.hpp"
 #include "engine/registration/propose.hpp"
+#include "engine/retrieval/index_cache.hpp"
 #include "engine/retrieval/query_view.hpp"
 #include "engine/retrieval/rank_poses.hpp"
 #include "engine/retrieval/search.hpp"
@@ -44,7 +45,9 @@ Funnel follow(const PointCloud& cloud,
   const CleanQuery query = clean_query(cloud);
   ViewCache views(query, options.seed, context, timings);
   const std::vector<bool> wanted(entries.size(), true);
-  const SearchInput input{query, options, entries, levels, wanted, views, timings, context};
+  IndexCache indexes;
+  const SearchInput input{
+      query, options, entries, levels, wanted, views, indexes, timings, context};
   SearchResult result;
   search_places(input, result);
   const Entry& entry = entries[right_entry];
