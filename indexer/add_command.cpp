@@ -107,6 +107,7 @@ int print_estimate(const AddRequest& request, const Program& program) {
                                {"keypoints", estimate.keypoints},
                                {"database_bytes", estimate.database_bytes},
                                {"memory_bytes", estimate.memory_bytes},
+                               {"served_bytes", estimate.served_bytes},
                                {"seconds", estimate.seconds}};
   const FeatureOptions& options = estimate.options;
   const std::string text =
@@ -119,7 +120,8 @@ int print_estimate(const AddRequest& request, const Program& program) {
       metres_text(options.normal_radius_m) + "\n" + "descriptor radius  " +
       metres_text(options.shot_radius_m) + "\n" + "database           about " +
       cli::bytes_text(estimate.database_bytes) + "\n" + "memory             about " +
-      cli::bytes_text(estimate.memory_bytes) + "\n" + "time               about " +
+      cli::bytes_text(estimate.memory_bytes) + " to index, " +
+      cli::bytes_text(estimate.served_bytes) + " in a server\n" + "time               about " +
       seconds_text(estimate.seconds) + "\n";
   program.print(object, text);
   return 0;

@@ -28,6 +28,7 @@ std::shared_ptr<const SceneRecord> find_record(const Catalog* catalog, const Ver
 std::optional<CatalogEntry> load_entry(const Database& database,
                                        std::int64_t scene_id,
                                        const Catalog* previous,
+                                       const RunContext& context,
                                        DamagedScene& damage) {
   const Transaction snapshot(database, Transaction::Kind::kRead);
   damage = {scene_id, {}, 0, {}};
@@ -53,7 +54,7 @@ std::optional<CatalogEntry> load_entry(const Database& database,
     entry.tags = read_tags(database, scene_id);
     entry.landmarks = read_landmarks(database, scene_id);
     entry.record = find_record(previous, *active);
-    if (!entry.record) entry.record = load_record(database, *active);
+    if (!entry.record) entry.record = load_record(database, *active, context);
     return entry;
   } catch (const Error& error) {
     // A segment of a format we do not know harms its own scene only, as damage does.
@@ -65,9 +66,9 @@ std::optional<CatalogEntry> load_entry(const Database& database,
 
 }  // namespace
 
-Segment load_segment(const Database& database, const VersionRow& row) {
+Segment load_segment(const Database& database, const VersionRow& row, const RunContext& context) {
   try {
-    return read_segment(database, row.segment_id, row.what());
+    return read_segment(database, row.segment_id, row.what(), context);
   } catch (const Error& error) {
     const std::string message = error.what();
     if (error.code() != ErrorCode::kDataLoss || message.starts_with(row.what())) throw;
@@ -75,9 +76,11 @@ Segment load_segment(const Database& database, const VersionRow& row) {
   }
 }
 
-std::shared_ptr<const SceneRecord> load_record(const Database& database, const VersionRow& row) {
+std::shared_ptr<const SceneRecord> load_record(const Database& database,
+                                               const VersionRow& row,
+                                               const RunContext& context) {
   return std::make_shared<const SceneRecord>(
-      decode_segment(load_segment(database, row), row.scene, row.what()));
+      decode_segment(load_segment(database, row, context), row.scene, row.what()));
 }
 
 std::shared_ptr<const Catalog> load_catalog(const Database& database,
@@ -95,7 +98,7 @@ std::shared_ptr<const Catalog> load_catalog(const Database& database,
   for (std::size_t i = 0; i < ids.size(); ++i) {
     context.report("load", i, ids.size());
     DamagedScene damage;
-    std::optional<CatalogEntry> entry = load_entry(database, ids[i], previous, damage);
+    std::optional<CatalogEntry> entry = load_entry(database, ids[i], previous, context, damage);
     if (entry) {
       catalog->entries.push_back(std::move(*entry));
     } else if (!damage.what.empty() && on_damaged) {

@@ -14,9 +14,12 @@ namespace landmarkdb {
 
 // Reads and verifies the segment or record of one version; within the caller's transaction.
 // Failures that name the database only (a damaged page) come to name the version too.
-Segment load_segment(const sqlite::Database& database, const VersionRow& row);
+Segment load_segment(const sqlite::Database& database,
+                     const VersionRow& row,
+                     const RunContext& context = {});
 std::shared_ptr<const SceneRecord> load_record(const sqlite::Database& database,
-                                               const VersionRow& row);
+                                               const VersionRow& row,
+                                               const RunContext& context = {});
 
 // Store::load_catalog; a read transaction a scene.
 std::shared_ptr<const Catalog> load_catalog(const sqlite::Database& database,

@@ -92,7 +92,8 @@ std::int64_t find_array(const Database& database,
 std::vector<std::byte> read_array(const Database& database,
                                   std::int64_t array_id,
                                   const ArrayInfo& info,
-                                  const std::string& what) {
+                                  const std::string& what,
+                                  const RunContext& context) {
   Statement size(database, "SELECT sum(length(data)) FROM segment_chunk WHERE array_id = ?");
   size.bind(array_id);
   size.step();
@@ -107,6 +108,7 @@ std::vector<std::byte> read_array(const Database& database,
   Statement chunks(database, "SELECT data FROM segment_chunk WHERE array_id = ? ORDER BY n");
   chunks.bind(array_id);
   while (chunks.step()) {
+    context.check("load");
     const std::span<const std::byte> chunk = chunks.blob(0);
     if (chunk.size() > bytes.size() - filled) damaged(what, "array '" + info.name + "' changed");
     if (!chunk.empty()) std::memcpy(bytes.data() + filled, chunk.data(), chunk.size());
@@ -151,7 +153,10 @@ std::int64_t write_segment(const Database& database,
   return segment_id;
 }
 
-Segment read_segment(const Database& database, std::int64_t segment_id, const std::string& what) {
+Segment read_segment(const Database& database,
+                     std::int64_t segment_id,
+                     const std::string& what,
+                     const RunContext& context) {
   SegmentRow row = read_segment_row(database, segment_id, what);
   Segment segment;
   segment.manifest = manifest_from_json(row.manifest_json, what);
@@ -160,7 +165,7 @@ Segment read_segment(const Database& database, std::int64_t segment_id, const st
   for (std::size_t i = 0; i < segment.manifest.arrays.size(); ++i) {
     const ArrayInfo& info = segment.manifest.arrays[i];
     const std::int64_t array_id = find_array(database, segment_id, i, info, what);
-    segment.arrays.push_back(read_array(database, array_id, info, what));
+    segment.arrays.push_back(read_array(database, array_id, info, what, context));
   }
   if (segment.bytes() != row.bytes) {
     damaged(what,

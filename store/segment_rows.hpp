@@ -23,7 +23,8 @@ std::int64_t write_segment(const sqlite::Database& database,
 // transaction.
 Segment read_segment(const sqlite::Database& database,
                      std::int64_t segment_id,
-                     const std::string& what);
+                     const std::string& what,
+                     const RunContext& context);
 
 // The manifest alone, with its digest checked.
 Manifest read_manifest(const sqlite::Database& database,

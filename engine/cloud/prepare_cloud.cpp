@@ -91,10 +91,10 @@ PreparedCloud prepare_cloud(const PointCloud& cloud,
                             const PrepareOptions& options,
                             const RunContext& context) {
   context.check("preprocess");
-  PointCloud thinned = thin(cloud, options.voxel_m);
+  PointCloud thinned = thin(cloud, options.voxel_m, context);
   check_spread(thinned.points);
   context.check("preprocess");
-  const SpatialIndex index(thinned.points);
+  const SpatialIndex index(thinned.points, context);
   bool oriented = true;
   if (!own_normals_hold(thinned, index)) {
     oriented = estimate_normals(thinned, options.normal_radius_m, index, context);

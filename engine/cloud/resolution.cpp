@@ -103,7 +103,7 @@ double sample_spacing(const std::vector<Eigen::Vector3f>& points,
 
 }  // namespace
 
-CloudScale measure_scale(const PointCloud& cloud) {
+CloudScale measure_scale(const PointCloud& cloud, const RunContext& context) {
   if (cloud.size() < kFewestPoints) {
     throw Error(ErrorCode::kInvalidArgument,
                 "the cloud has " + std::to_string(cloud.size()) + " usable points, want at least " +
@@ -113,7 +113,8 @@ CloudScale measure_scale(const PointCloud& cloud) {
   scale.extent_m = measure_extent(cloud.points);
   if (!(scale.extent_m > 0.0) || !std::isfinite(scale.extent_m)) return scale;
   const double cell_m = scale.extent_m / kCellsAcross;
-  scale.spacing_m = sample_spacing(cloud.points, group_by_voxel(cloud.points, cell_m), cell_m);
+  scale.spacing_m =
+      sample_spacing(cloud.points, group_by_voxel(cloud.points, cell_m, context), cell_m);
   return scale;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "engine/base/run_context.hpp"
 #include "engine/types/features.hpp"
 #include "engine/types/point_cloud.hpp"
 #include "engine/types/scene_record.hpp"
@@ -15,8 +16,8 @@ struct CloudScale {
 };
 
 // Measures a sanitised cloud. Deterministic; looks at no more than a fixed number of points. Throws
-// Error{kInvalidArgument} for fewer than 4 points.
-CloudScale measure_scale(const PointCloud& cloud);
+// Error{kInvalidArgument} for fewer than 4 points, and what `context.check` does.
+CloudScale measure_scale(const PointCloud& cloud, const RunContext& context = {});
 
 // True when the extent suggests that the units are not metres (a room of 3,000 m or of 3 mm, by
 // kind).

@@ -12,6 +12,8 @@
 namespace landmarkdb {
 namespace {
 
+constexpr std::size_t kStep = 65'536;  // points between two looks at the stop token
+
 // Middle of the values, and half the width of what holds the middle half of them.
 struct Bulk {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -95,7 +97,8 @@ bool is_unit(const Eigen::Vector3f& normal) {
 // Makes all normals exactly unit. A few bad ones (surface reconstruction leaves some) take that of
 // the nearest point with a good one; with many, none can be trusted and all are dropped.
 void repair_normals(const std::vector<Eigen::Vector3f>& points,
-                    std::vector<Eigen::Vector3f>& normals) {
+                    std::vector<Eigen::Vector3f>& normals,
+                    const RunContext& context) {
   constexpr std::size_t kGoodPerBad = 9;
   std::vector<std::uint32_t> good;
   std::vector<std::uint32_t> bad;
@@ -115,9 +118,11 @@ void repair_normals(const std::vector<Eigen::Vector3f>& points,
   std::vector<Eigen::Vector3f> good_points;
   good_points.reserve(good.size());
   for (const std::uint32_t i : good) good_points.push_back(points[i]);
-  const SpatialIndex index(good_points);
+  const SpatialIndex index(good_points, context);
   std::vector<Neighbour> nearest;
+  std::size_t repaired = 0;
   for (const std::uint32_t i : bad) {
+    if (repaired++ % kStep == 0) context.check("sanitise");
     index.nearest(points[i], 1, nearest);
     normals[i] = normals[good[nearest[0].index]];
   }
@@ -156,7 +161,7 @@ void check_viewpoints(PointCloud& cloud) {
 
 }  // namespace
 
-CloudCounts sanitise(PointCloud& cloud) {
+CloudCounts sanitise(PointCloud& cloud, const RunContext& context) {
   constexpr double kFarExtents = 1e5;
   constexpr double kFarAtLeast_m = 1e6;
   check_lengths(cloud);
@@ -168,6 +173,7 @@ CloudCounts sanitise(PointCloud& cloud) {
   std::vector<std::uint32_t> kept;
   kept.reserve(cloud.size());
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (i % kStep == 0) context.check("sanitise");
     const Eigen::Vector3f& p = cloud.points[i];
     if (!p.allFinite()) {
       ++counts.not_finite;
@@ -184,7 +190,7 @@ CloudCounts sanitise(PointCloud& cloud) {
   keep(cloud.normals, kept);
   keep(cloud.colours, kept);
   keep(cloud.viewpoint_index, kept);
-  repair_normals(cloud.points, cloud.normals);
+  repair_normals(cloud.points, cloud.normals, context);
   check_viewpoints(cloud);
   cloud.width = 0;
   cloud.height = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "engine/base/run_context.hpp"
 #include "engine/types/point_cloud.hpp"
 
 namespace landmarkdb {
@@ -10,7 +11,8 @@ namespace landmarkdb {
 // the few that are not finite or not of unit length within 10 % take the nearest good one, and with
 // more than a tenth of them bad all are dropped (the estimator makes new ones). Viewpoints that are
 // not finite, or a point's number of one that is not there, drop the viewpoints. Returns what was
-// counted. Throws Error{kInvalidArgument} when the arrays differ in length.
-CloudCounts sanitise(PointCloud& cloud);
+// counted. Throws Error{kInvalidArgument} when the arrays differ in length, and what
+// `context.check` does; the cloud is then of no use.
+CloudCounts sanitise(PointCloud& cloud, const RunContext& context = {});
 
 }  // namespace landmarkdb

@@ -11,10 +11,14 @@ namespace {
 
 struct Points {
   std::span<const Eigen::Vector3f> points;
+  const RunContext* building = nullptr;  // while the tree is built
+  mutable std::uint64_t looks = 0;
 
   // The names nanoflann asks for.
   std::size_t kdtree_get_point_count() const { return points.size(); }
   float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    constexpr std::uint64_t kStep = 1 << 20;  // some ten milliseconds
+    if (building != nullptr && ++looks % kStep == 0) building->check("index");
     return points[i][static_cast<Eigen::Index>(axis)];
   }
   template <typename Box>
@@ -23,11 +27,24 @@ struct Points {
   }
 };
 
-using KdTree = nanoflann::KDTreeSingleIndexAdaptor<
-    nanoflann::L2_Simple_Adaptor<float, Points, float, std::uint32_t>,
-    Points,
-    3,
-    std::uint32_t>;
+// NOLINTBEGIN(readability-identifier-naming): evalMetric is nanoflann's name.
+// Its own metric, but past the question whether the tree is being built: searches ask it for every
+// point they meet.
+struct Metric : nanoflann::L2_Simple_Adaptor<float, Points, float, std::uint32_t> {
+  using L2_Simple_Adaptor::L2_Simple_Adaptor;
+  float evalMetric(const float* a, std::uint32_t b, std::size_t) const {
+    const Eigen::Vector3f& p = data_source.points[b];
+    float sum = 0.0F;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const float difference = a[axis] - p[axis];
+      sum += difference * difference;
+    }
+    return sum;
+  }
+};
+// NOLINTEND(readability-identifier-naming)
+
+using KdTree = nanoflann::KDTreeSingleIndexAdaptor<Metric, Points, 3, std::uint32_t>;
 
 constexpr std::size_t kLeafPoints = 12;  // near nanoflann's default of 10
 // The tree's lower bounds carry rounding errors; this much of slack makes the search exact again.
@@ -94,15 +111,18 @@ class WithinResult {
 }  // namespace
 
 struct SpatialIndex::Tree {
-  explicit Tree(std::span<const Eigen::Vector3f> points)
-      : data{points}, index(3, data, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafPoints)) {}
+  Tree(std::span<const Eigen::Vector3f> points, const RunContext& context)
+      : data{points, &context},
+        index(3, data, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafPoints)) {
+    data.building = nullptr;
+  }
 
   Points data;
   KdTree index;
 };
 
-SpatialIndex::SpatialIndex(std::span<const Eigen::Vector3f> points)
-    : tree_(std::make_unique<Tree>(points)) {}
+SpatialIndex::SpatialIndex(std::span<const Eigen::Vector3f> points, const RunContext& context)
+    : tree_(std::make_unique<Tree>(points, context)) {}
 SpatialIndex::~SpatialIndex() = default;
 SpatialIndex::SpatialIndex(SpatialIndex&&) noexcept = default;
 SpatialIndex& SpatialIndex::operator=(SpatialIndex&&) noexcept = default;

@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "engine/base/run_context.hpp"
+
 namespace landmarkdb {
 
 struct Neighbour {
@@ -20,7 +22,8 @@ struct Neighbour {
 // index.
 class SpatialIndex {
  public:
-  explicit SpatialIndex(std::span<const Eigen::Vector3f> points);
+  // Throws what `context.check` does.
+  explicit SpatialIndex(std::span<const Eigen::Vector3f> points, const RunContext& context = {});
   ~SpatialIndex();
   SpatialIndex(SpatialIndex&&) noexcept;
   SpatialIndex& operator=(SpatialIndex&&) noexcept;

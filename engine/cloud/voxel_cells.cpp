@@ -16,6 +16,7 @@ namespace {
 
 using Cell = std::array<std::int64_t, 3>;
 
+constexpr std::size_t kStep = 65'536;    // points between two looks at the stop token
 constexpr double kLargestCell = 0x1p62;  // keeps differences of cell numbers inside 64 bits
 
 struct Keyed {
@@ -38,11 +39,12 @@ Cell cell_of(const Eigen::Vector3f& p, double cells_per_m) {
 }
 
 // Least significant digit first; stable, so points of one key keep their order.
-void radix_sort(std::vector<Keyed>& items, int bits) {
+void radix_sort(std::vector<Keyed>& items, int bits, const RunContext& context) {
   constexpr int kDigitBits = 11;  // 2,048 counters stay in the first-level cache
   constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
   std::vector<Keyed> other(items.size());
   for (int shift = 0; shift < bits; shift += kDigitBits) {
+    context.check("voxels");
     std::array<std::uint32_t, kDigits + 1> start{};
     auto digit = [shift](const Keyed& item) { return (item.key >> shift) & (kDigits - 1); };
     for (const Keyed& item : items) ++start[digit(item) + 1];
@@ -75,7 +77,8 @@ struct Bounds {
 std::vector<std::uint32_t> order_by_key(std::span<const Eigen::Vector3f> points,
                                         std::vector<std::uint32_t> finite,
                                         double cells_per_m,
-                                        const Bounds& bounds) {
+                                        const Bounds& bounds,
+                                        const RunContext& context) {
   const int shift_y = bounds.bits(0);
   const int shift_z = shift_y + bounds.bits(1);
   std::vector<Keyed> items;
@@ -91,7 +94,7 @@ std::vector<std::uint32_t> order_by_key(std::span<const Eigen::Vector3f> points,
     if (shift_z < 64) key |= from_low(2) << shift_z;
     items.push_back({key, i});
   }
-  radix_sort(items, shift_z + bounds.bits(2));
+  radix_sort(items, shift_z + bounds.bits(2), context);
   for (std::size_t k = 0; k < items.size(); ++k) finite[k] = items[k].index;
   return finite;
 }
@@ -115,7 +118,9 @@ auto rank(const VoxelCell& cell) { return std::tie(cell.z, cell.y, cell.x); }
 
 }  // namespace
 
-VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points, double edge_m) {
+VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
+                          double edge_m,
+                          const RunContext& context) {
   if (!(edge_m > 0.0) || !std::isfinite(edge_m) || !std::isfinite(1.0 / edge_m)) {
     throw Error(ErrorCode::kInvalidArgument,
                 "voxel size is " + std::to_string(edge_m) + " m, want a positive length");
@@ -129,6 +134,7 @@ VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points, double edge_m
   finite.reserve(points.size());
   Bounds bounds;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i % kStep == 0) context.check("voxels");
     if (!points[i].allFinite()) continue;
     finite.push_back(static_cast<std::uint32_t>(i));
     bounds.add(cell_of(points[i], cells_per_m));
@@ -136,9 +142,10 @@ VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points, double edge_m
   VoxelCells result;
   if (finite.empty()) return result;
   const bool fits = bounds.bits(0) + bounds.bits(1) + bounds.bits(2) <= 64;
-  result.order = fits ? order_by_key(points, std::move(finite), cells_per_m, bounds)
+  result.order = fits ? order_by_key(points, std::move(finite), cells_per_m, bounds, context)
                       : order_by_compare(points, std::move(finite), cells_per_m);
   for (std::uint32_t k = 0; k < result.order.size(); ++k) {
+    if (k % kStep == 0) context.check("voxels");
     const Cell cell = cell_of(points[result.order[k]], cells_per_m);
     const VoxelCell next{cell[0], cell[1], cell[2], k, k + 1};
     if (!result.cells.empty() && rank(result.cells.back()) == rank(next)) {

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "engine/base/run_context.hpp"
+
 namespace landmarkdb {
 
 // The points of one cubic cell of a lattice through the cloud's zero.
@@ -23,8 +25,10 @@ struct VoxelCells {
 
 // Throws Error{kInvalidArgument} for an edge that is not positive and finite, or so small that the
 // cell numbers of these points would not fit 64 bits. Cost: a radix sort of 64-bit keys, unless the
-// extent needs wider ones.
-VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points, double edge_m);
+// extent needs wider ones. Throws what `context.check` does.
+VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
+                          double edge_m,
+                          const RunContext& context = {});
 
 // The cell's place in `cells`, or nullptr where it is empty.
 const VoxelCell* find_cell(const VoxelCells& cells, std::int64_t x, std::int64_t y, std::int64_t z);

@@ -40,8 +40,9 @@ std::array<std::uint8_t, 3> mean_colour(const std::vector<std::array<std::uint8_
 
 }  // namespace
 
-PointCloud thin(const PointCloud& cloud, double voxel_m) {
-  const VoxelCells grid = group_by_voxel(cloud.points, voxel_m);
+PointCloud thin(const PointCloud& cloud, double voxel_m, const RunContext& context) {
+  constexpr std::size_t kStep = 16'384;  // cells between two looks at the stop token
+  const VoxelCells grid = group_by_voxel(cloud.points, voxel_m, context);
   PointCloud thinned;
   thinned.origin = cloud.origin;
   thinned.viewpoints = cloud.viewpoints;
@@ -52,6 +53,7 @@ PointCloud thin(const PointCloud& cloud, double voxel_m) {
   for (const VoxelCell& cell : grid.cells) {
     const auto which =
         std::span<const std::uint32_t>(grid.order).subspan(cell.begin, cell.end - cell.begin);
+    if (thinned.points.size() % kStep == 0) context.check("voxels");
     thinned.points.push_back(mean(cloud.points, which));
     if (!cloud.normals.empty()) thinned.normals.push_back(mean_normal(cloud.normals, which));
     if (!cloud.colours.empty()) thinned.colours.push_back(mean_colour(cloud.colours, which));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "engine/base/run_context.hpp"
 #include "engine/types/point_cloud.hpp"
 
 namespace landmarkdb {
@@ -10,7 +11,7 @@ namespace landmarkdb {
 // renormalised, colours averaged, the viewpoint of the voxel's first point). Voxel keys are 64-bit,
 // so no extent overflows; voxels come out ordered by key, so the result does not depend on the
 // order of the points beyond float rounding. Throws Error{kInvalidArgument} for a voxel that is not
-// positive and finite.
-PointCloud thin(const PointCloud& cloud, double voxel_m);
+// positive and finite, and what `context.check` does.
+PointCloud thin(const PointCloud& cloud, double voxel_m, const RunContext& context = {});
 
 }  // namespace landmarkdb

@@ -1,7 +1,12 @@
 #include "engine/registration/surface_grid.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <sstream>
+#include <unordered_set>
+
+#include "engine/base/error.hpp"
 
 namespace landmarkdb {
 
@@ -15,21 +20,86 @@ std::size_t cell_in_block(const Eigen::Vector3i& cell) {
   return static_cast<std::size_t>((cell.x() & 7) | ((cell.y() & 7) << 3) | ((cell.z() & 7) << 6));
 }
 
+constexpr std::size_t kStep = 4096;  // points between two looks at the stop token
+
+// Throws when a point lies more cells from zero than a key can hold.
+void check_extent(std::span<const Eigen::Vector3f> points, double cell_m) {
+  double farthest_m = 0.0;
+  for (const Eigen::Vector3f& p : points) {
+    farthest_m = std::max(farthest_m, static_cast<double>(p.cwiseAbs().maxCoeff()));
+  }
+  const double cells = farthest_m / cell_m;
+  if (cells < SurfaceGrid::kMostCells) return;
+  std::ostringstream text;
+  text << "a voxel of " << cell_m << " m is too small for points " << farthest_m
+       << " m out: that is " << cells << " cells, the limit is " << SurfaceGrid::kMostCells;
+  throw Error(ErrorCode::kInvalidArgument, text.str(), "voxel");
+}
+
+// `blocks` were needed for `done` of the `points`.
+[[noreturn]] void refuse_blocks(std::size_t blocks,
+                                std::size_t done,
+                                std::size_t points,
+                                double cell_m) {
+  const double share = static_cast<double>(std::max<std::size_t>(done, 1)) /
+                       static_cast<double>(std::max<std::size_t>(points, 1));
+  std::ostringstream text;
+  text << "a voxel of " << cell_m << " m is too small for this cloud: the grid of its " << points
+       << " points would take about " << static_cast<double>(blocks) / share
+       << " blocks of 2 KiB, the limit is " << SurfaceGrid::kMostBlocks;
+  throw Error(ErrorCode::kInvalidArgument, text.str(), "voxel");
+}
+
 }  // namespace
+
+std::uint64_t GridSize::bytes() const {
+  constexpr std::uint64_t kBlockBytes = 2048 + 24;  // and its place in a half-full table
+  return kBlockBytes * blocks + sizeof(Surfel) * points;
+}
+
+GridSize SurfaceGrid::size_for(std::span<const Eigen::Vector3f> points,
+                               double cell_m,
+                               int reach_cells,
+                               const RunContext& context) {
+  check_extent(points, cell_m);
+  const auto inverse_cell = static_cast<float>(1.0 / cell_m);
+  std::unordered_set<std::uint64_t> blocks;
+  Cell low_before = Cell::Constant(kLimit), high_before = low_before;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i % kStep == 0) context.check("grid");
+    const Cell home = (points[i].array() * inverse_cell).floor().cast<int>();
+    const Cell low = (home.array() - reach_cells).unaryExpr([](int v) { return v >> kBlockBits; });
+    const Cell high = (home.array() + reach_cells).unaryExpr([](int v) { return v >> kBlockBits; });
+    if (low == low_before && high == high_before) continue;  // neighbours come together
+    low_before = low;
+    high_before = high;
+    for (int z = low.z(); z <= high.z(); ++z) {
+      for (int y = low.y(); y <= high.y(); ++y) {
+        for (int x = low.x(); x <= high.x(); ++x) blocks.insert(key_of(Cell(x, y, z)));
+      }
+    }
+    if (blocks.size() > kMostBlocks) refuse_blocks(blocks.size(), i + 1, points.size(), cell_m);
+  }
+  return {blocks.size(), points.size()};
+}
 
 SurfaceGrid::SurfaceGrid(std::span<const Eigen::Vector3f> points,
                          std::span<const Eigen::Vector3f> normals,
                          double cell_m,
-                         int reach_cells)
+                         int reach_cells,
+                         const RunContext& context)
     : cell_m_(static_cast<float>(cell_m)),
       inverse_cell_(static_cast<float>(1.0 / cell_m)),
       reach_(reach_cells) {
   assert(points.size() == normals.size() && "one normal a point");
   assert(cell_m > 0.0 && reach_cells >= 0 && "a grid needs a cell size");
+  check_extent(points, cell_m);
   keys_.assign(1024, kNoKey);
   slots_.assign(1024, 0);
   surfels_.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i % kStep == 0) context.check("grid");
+    if (blocks_.size() > kMostBlocks) refuse_blocks(blocks_.size(), i, points.size(), cell_m);
     surfels_.push_back(Surfel{points[i], normals[i]});
     insert_around(static_cast<std::uint32_t>(i));
   }

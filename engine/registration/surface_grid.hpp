@@ -9,12 +9,20 @@
 
 #include <Eigen/Core>
 
+#include "engine/base/run_context.hpp"
+
 namespace landmarkdb {
 
 // A point of a surface and the unit normal there.
 struct Surfel {
   Eigen::Vector3f point;
   Eigen::Vector3f normal;
+};
+
+// What a grid takes: blocks of 8 x 8 x 8 cells and a surfel a point.
+struct GridSize {
+  std::size_t blocks = 0, points = 0;
+  std::uint64_t bytes() const;
 };
 
 // "What surface is near here?", answered in a few nanoseconds: every cell within `reach` cells of
@@ -24,11 +32,27 @@ struct Surfel {
 // Built once, then immutable and thread-safe. A copy of the surfels is kept.
 class SurfaceGrid {
  public:
-  // One surfel for each point; `cell_m` is usually the voxel the points were thinned with.
+  // Cells from zero that a point may lie out, for the numbers in the keys.
+  static constexpr int kMostCells = (1 << 20) - 32;
+  // 4 GiB: a place of 20 million points at its own spacing takes half of that. Far smaller cells
+  // than the spacing take four blocks a point.
+  static constexpr std::size_t kMostBlocks = std::size_t{1} << 21U;
+
+  // One surfel for each point; `cell_m` is usually the voxel the points were thinned with. Throws
+  // Error{kInvalidArgument} as size_for() does, and what `context.check` does.
   SurfaceGrid(std::span<const Eigen::Vector3f> points,
               std::span<const Eigen::Vector3f> normals,
               double cell_m,
-              int reach_cells);
+              int reach_cells,
+              const RunContext& context = {});
+
+  // What that grid would take (a few blocks less in truth), counted without it. Throws
+  // Error{kInvalidArgument}, field "voxel", with what is wanted and the limit for a grid of more
+  // than kMostCells or kMostBlocks.
+  static GridSize size_for(std::span<const Eigen::Vector3f> points,
+                           double cell_m,
+                           int reach_cells,
+                           const RunContext& context = {});
 
   // The surfel near `p`, or nullptr when no surface is within reach of p's cell.
   const Surfel* near(const Eigen::Vector3f& p) const;

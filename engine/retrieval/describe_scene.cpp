@@ -13,6 +13,7 @@
 #include "engine/cloud/sanitise.hpp"
 #include "engine/features/describe_shot.hpp"
 #include "engine/features/detect_keypoints.hpp"
+#include "engine/retrieval/entry.hpp"
 #include "engine/retrieval/feature_options.hpp"
 
 namespace landmarkdb {
@@ -46,7 +47,7 @@ MergedScans merge_scans(std::vector<Scan> scans, const RunContext& context) {
   std::vector<Eigen::Isometry3d> T_scene_cloud;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     context.report("sanitise", i, scans.size());
-    add_counts(merged.counts, sanitise(scans[i].cloud));
+    add_counts(merged.counts, sanitise(scans[i].cloud, context));
     merged.sources.push_back(std::move(scans[i].source));
     if (scans[i].cloud.empty()) continue;
     clouds.push_back(std::move(scans[i].cloud));
@@ -99,9 +100,11 @@ SceneRecord describe_scene(std::string name,
   MergedScans merged = merge_scans(std::move(scans), context);
   record.sources = std::move(merged.sources);
 
-  const CloudScale scale = measure_scale(merged.cloud);
+  const CloudScale scale = measure_scale(merged.cloud, context);
   if (units_look_wrong(scale, options.kind)) record.warnings.emplace_back("units_suspect");
   record.options = feature_options_of(scale, options);
+  grid_size(
+      merged.cloud.points, record.options.voxel_m, context);  // refuses what no server could hold
 
   context.report("prepare", 0, 1);
   record.prepared = prepare_cloud(merged.cloud,
@@ -134,7 +137,8 @@ IndexEstimate estimate_index(std::vector<Scan> scans,
   const MergedScans merged = merge_scans(std::move(scans), context);
   IndexEstimate estimate;
   estimate.points = merged.counts.points;
-  estimate.options = feature_options_of(measure_scale(merged.cloud), options);
+  estimate.options = feature_options_of(measure_scale(merged.cloud, context), options);
+  const GridSize grid = grid_size(merged.cloud.points, estimate.options.voxel_m, context);
   const PreparedCloud prepared =
       prepare_cloud(merged.cloud,
                     merged.counts,
@@ -153,6 +157,7 @@ IndexEstimate estimate_index(std::vector<Scan> scans,
   estimate.database_bytes =
       kPointBytes * estimate.points_used + kKeypointBytes * estimate.keypoints;
   estimate.memory_bytes = estimate.points * 64 + 4 * estimate.database_bytes;
+  estimate.served_bytes = 2 * estimate.database_bytes + grid.bytes();
   // A sample of the descriptors tells what the rest will take.
   constexpr std::size_t kSample = 200;
   Keypoints sample;

@@ -31,20 +31,23 @@ struct Scan {
 // What indexing would take, from a look at the points alone.
 struct IndexEstimate {
   FeatureOptions options;
-  std::uint64_t points = 0, points_used = 0, keypoints = 0, database_bytes = 0, memory_bytes = 0;
+  std::uint64_t points = 0, points_used = 0, keypoints = 0, database_bytes = 0;
+  std::uint64_t memory_bytes = 0;  // while it is indexed
+  std::uint64_t served_bytes = 0;  // in a server: the arrays, and the grid that poses are tested on
   double seconds = 0.0;
 };
 
 // Turns scans into a scene record: sanitise, merge, derive the working resolution, prepare, detect
 // keypoints, describe. `scans` is consumed. Reports the stages "sanitise", "prepare", "keypoints",
 // "describe". Throws Error{kInvalidArgument} when nothing is left to describe (empty, too few
-// points, all on one plane or line) with what was counted; Error{kCancelled} on a stop request.
+// points, all on one plane or line) with what was counted, or for a voxel so small that no server
+// could hold the scene's grid, with the figures; Error{kCancelled} on a stop request.
 SceneRecord describe_scene(std::string name,
                            std::vector<Scan> scans,
                            const IndexOptions& options,
                            const RunContext& context);
 
-// The same as far as the working resolution, then an extrapolation; cheap.
+// The same as far as the working resolution, then an extrapolation; cheap. Refuses the same.
 IndexEstimate estimate_index(std::vector<Scan> scans,
                              const IndexOptions& options,
                              const RunContext& context);

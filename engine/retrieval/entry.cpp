@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/error.hpp"
+
 namespace landmarkdb {
 
 namespace {
@@ -12,10 +14,26 @@ constexpr int kReachCells = 2;                 // 10 cm in a room described at 5
 constexpr std::size_t kSightPoints = 200'000;  // free space is judged on what of these is in view
 constexpr std::size_t kTestPoints = 512;
 
+// Errors name the scene: there may be hundreds.
+SurfaceGrid grid_of_scene(const SceneRecord& record, const RunContext& context) {
+  try {
+    return make_grid(record.prepared, context);
+  } catch (const Error& error) {
+    if (error.field() != "voxel") throw;
+    throw Error(error.code(), "scene '" + record.name + "': " + error.what(), error.field());
+  }
+}
+
 }  // namespace
 
-SurfaceGrid make_grid(const PreparedCloud& cloud) {
-  return SurfaceGrid(cloud.points, cloud.normals, cloud.resolution_m, kReachCells);
+SurfaceGrid make_grid(const PreparedCloud& cloud, const RunContext& context) {
+  return SurfaceGrid(cloud.points, cloud.normals, cloud.resolution_m, kReachCells, context);
+}
+
+GridSize grid_size(std::span<const Eigen::Vector3f> points,
+                   double voxel_m,
+                   const RunContext& context) {
+  return SurfaceGrid::size_for(points, voxel_m, kReachCells, context);
 }
 
 std::vector<std::uint32_t> spread(std::size_t size, std::size_t count) {
@@ -27,11 +45,12 @@ std::vector<std::uint32_t> spread(std::size_t size, std::size_t count) {
   return indices;
 }
 
-Entry make_entry(CatalogEntry stored) {
-  const PreparedCloud& cloud = stored.record->prepared;
+Entry make_entry(CatalogEntry stored, const RunContext& context) {
+  const SceneRecord& record = *stored.record;
+  const PreparedCloud& cloud = record.prepared;
   constexpr std::uint64_t kSeed = 1;  // an entry's own sample: the same for every query
   Entry entry{.stored = std::move(stored),
-              .grid = make_grid(cloud),
+              .grid = grid_of_scene(record, context),
               .test = select_test_points(cloud.points, cloud.normals, kTestPoints, kSeed),
               .sight_points = {},
               .centre = Eigen::Vector3d::Zero(),

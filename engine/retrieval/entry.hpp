@@ -2,10 +2,12 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "engine/base/run_context.hpp"
 #include "engine/registration/pose_score.hpp"
 #include "engine/registration/surface_grid.hpp"
 #include "engine/types/scene_record.hpp"
@@ -27,9 +29,14 @@ struct Entry {
 
 // The grid every surface is verified on: its cell is the working resolution, its reach what a
 // proposal from one local reference frame may be off by.
-SurfaceGrid make_grid(const PreparedCloud& cloud);
+SurfaceGrid make_grid(const PreparedCloud& cloud, const RunContext& context = {});
+// What the grid of points at this resolution takes; throws where it would take too much.
+GridSize grid_size(std::span<const Eigen::Vector3f> points,
+                   double voxel_m,
+                   const RunContext& context);
 
-Entry make_entry(CatalogEntry stored);
+// Throws what make_grid does, naming the scene, and what `context.check` does.
+Entry make_entry(CatalogEntry stored, const RunContext& context = {});
 
 // Every n-th point, so that about `count` are left; points of a thinned cloud lie evenly on the
 // surface.

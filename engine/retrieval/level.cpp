@@ -22,7 +22,7 @@ Level make_level(std::span<const Entry> entries, std::span<const std::size_t> ch
   return level;
 }
 
-std::vector<Level> make_levels(std::span<const Entry> entries) {
+std::vector<Level> make_levels(std::span<const Entry> entries, const RunContext& context) {
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (entries[i].is_object()) continue;
@@ -35,7 +35,10 @@ std::vector<Level> make_levels(std::span<const Entry> entries) {
     group->push_back(i);
   }
   std::vector<Level> levels;
-  for (const std::vector<std::size_t>& group : groups) levels.push_back(make_level(entries, group));
+  for (const std::vector<std::size_t>& group : groups) {
+    context.check("index");
+    levels.push_back(make_level(entries, group));
+  }
   return levels;
 }
 

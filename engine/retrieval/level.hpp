@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/run_context.hpp"
 #include "engine/matching/descriptor_index.hpp"
 #include "engine/retrieval/entry.hpp"
 #include "engine/types/features.hpp"
@@ -26,8 +27,9 @@ struct Level {
 };
 
 // Groups the places by their feature options, in order of first appearance. Objects are not in
-// levels: they are looked for in the query, not the query in them.
-std::vector<Level> make_levels(std::span<const Entry> entries);
+// levels: they are looked for in the query, not the query in them. Throws what `context.check`
+// does.
+std::vector<Level> make_levels(std::span<const Entry> entries, const RunContext& context = {});
 
 // The level of some of these entries alone (indices, ascending, all places described alike): what
 // is asked of named scenes must not depend on the others.

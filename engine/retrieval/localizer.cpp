@@ -161,9 +161,9 @@ Localizer::Localizer(std::shared_ptr<const Catalog> catalog, const RunContext& c
   state->entries.reserve(total);
   for (std::size_t i = 0; i < total; ++i) {
     context.report("index", i, total);
-    state->entries.push_back(make_entry(state->catalog->entries[i]));
+    state->entries.push_back(make_entry(state->catalog->entries[i], context));
   }
-  state->levels = make_levels(state->entries);
+  state->levels = make_levels(state->entries, context);
   state_ = std::move(state);
 }
 
@@ -183,7 +183,7 @@ QueryResult Localizer::query(const PointCloud& cloud,
   context.report("preprocess", 0, 1);
   const CleanQuery query = [&] {
     const StageTimer timer(answer.timings.preprocess);
-    return clean_query(cloud);
+    return clean_query(cloud, context);
   }();
   answer.query.points = query.counts.points;
   answer.query.points_used = query.counts.used;

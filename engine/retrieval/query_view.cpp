@@ -35,16 +35,17 @@ Keypoints spread_keypoints(const Keypoints& keypoints) {
 
 }  // namespace
 
-CleanQuery clean_query(PointCloud cloud) {
-  const CloudCounts counts = sanitise(cloud);
+CleanQuery clean_query(PointCloud cloud, const RunContext& context) {
+  const CloudCounts counts = sanitise(cloud, context);
   if (cloud.viewpoints.empty()) {
     cloud.viewpoints.emplace_back(-cloud.origin.cast<float>());
     cloud.viewpoint_index.clear();
   }
-  const double spacing_m = cloud.size() >= 4 ? measure_scale(cloud).spacing_m : 0.0;
+  const double spacing_m = cloud.size() >= 4 ? measure_scale(cloud, context).spacing_m : 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3f& point : cloud.points) centre += point.cast<double>();
   if (!cloud.empty()) centre /= static_cast<double>(cloud.size());
+  context.check("preprocess");
   RangeImage ranges(cloud.points, cloud.viewpoints[0], kSightStepRad);
   return {std::move(cloud), counts, spacing_m, centre, std::move(ranges)};
 }

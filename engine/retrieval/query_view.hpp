@@ -24,7 +24,8 @@ struct CleanQuery {
 };
 
 // Cleans a query. Its viewpoint is the sensor frame's zero unless the cloud has one.
-CleanQuery clean_query(PointCloud cloud);
+// Throws what `context.check` does.
+CleanQuery clean_query(PointCloud cloud, const RunContext& context = {});
 
 // The query as an entry of one resolution sees it.
 struct QueryView {

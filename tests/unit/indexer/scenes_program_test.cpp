@@ -111,7 +111,7 @@ TEST_F(IndexerProgram, ShowsTablesToPeople) {
 TEST_F(IndexerProgram, EstimatesWithoutTouchingADatabase) {
   const std::vector<std::string> before = files();
   const auto estimate = run_json({"add", "room", scan(), "--estimate"});
-  for (const char* key : {"points", "keypoints", "database_bytes", "seconds"}) {
+  for (const char* key : {"points", "keypoints", "database_bytes", "served_bytes", "seconds"}) {
     EXPECT_GT(estimate.at(key).get<double>(), 0.0) << key;
   }
   EXPECT_GT(estimate.at("options").at("voxel_m").get<double>(), 0.0);

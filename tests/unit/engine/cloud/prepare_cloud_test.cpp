@@ -1,9 +1,15 @@
 #include "engine/cloud/prepare_cloud.hpp"
 
+#include <stop_token>
+
 #include <gmock/gmock.h>
 
 #include "engine/base/error.hpp"
+#include "engine/base/random.hpp"
+#include "engine/cloud/resolution.hpp"
 #include "engine/cloud/sanitise.hpp"
+#include "engine/cloud/spatial_index.hpp"
+#include "engine/cloud/voxel_grid.hpp"
 #include "tests/unit/engine/cloud/shapes.hpp"
 
 namespace landmarkdb {
@@ -92,6 +98,25 @@ TEST(PrepareCloud, TakesAPlaneAlone) {
   cloud.viewpoints = {Eigen::Vector3f::Zero()};
   const PreparedCloud prepared = prepare_cloud(cloud, {}, kOptions, {});
   EXPECT_NEAR(prepared.normals[100].z(), -1.0F, 1e-4F);
+}
+
+// A long query used to be cleaned and thinned to the end whatever its deadline.
+TEST(Preprocessing, StopsInEachOfItsSteps) {
+  std::stop_source stop;
+  stop.request_stop();
+  RunContext context;
+  context.stop = stop.get_token();
+  Random random(1);
+  PointCloud cloud;
+  for (int i = 0; i < 400'000; ++i) {  // a kd-tree looks at the token every million coordinates
+    cloud.points.emplace_back(static_cast<float>(random.uniform()),
+                              static_cast<float>(random.uniform()),
+                              static_cast<float>(random.uniform()));
+  }
+  EXPECT_THROW(thin(cloud, 0.1, context), Error);
+  EXPECT_THROW(measure_scale(cloud, context), Error);
+  EXPECT_THROW(SpatialIndex(cloud.points, context), Error);
+  EXPECT_THROW(sanitise(cloud, context), Error);
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <limits>
+#include <stop_token>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include "engine/base/error.hpp"
 #include "engine/base/random.hpp"
 
 namespace landmarkdb {
@@ -127,6 +129,64 @@ TEST(SurfaceGrid, IsEmptyWithoutPoints) {
   const SurfaceGrid grid({}, {}, 0.05, 2);
   EXPECT_EQ(grid.near({0, 0, 0}), nullptr);
   EXPECT_TRUE(grid.surfels().empty());
+}
+
+// Points that each lie alone, some cells apart.
+std::vector<Eigen::Vector3f> lone_points(int a_side) {
+  std::vector<Eigen::Vector3f> points;
+  for (int x = 0; x < a_side; ++x) {
+    for (int y = 0; y < a_side; ++y) {
+      for (int z = 0; z < a_side; ++z) points.emplace_back(Eigen::Vector3i(x, y, z).cast<float>());
+    }
+  }
+  return points;
+}
+
+TEST(SurfaceGridSize, ForetellsWhatTheGridTakes) {
+  Random random(3);
+  const Cloud cloud = random_cloud(20'000, Eigen::Vector3f(5, -3, 1), 2.0F, random);
+  const SurfaceGrid grid(cloud.points, cloud.normals, 0.05, 2);
+  const GridSize size = SurfaceGrid::size_for(cloud.points, 0.05, 2);
+  EXPECT_EQ(size.points, 20'000U);
+  EXPECT_GT(size.blocks, 1000U);
+  EXPECT_NEAR(static_cast<double>(size.bytes()) / static_cast<double>(grid.memory_bytes()), 1, 0.1);
+}
+
+// Such cells used to be laid over one another without a word.
+TEST(SurfaceGridSize, RefusesPointsPastTheNumbersOfCells) {
+  const std::vector<Eigen::Vector3f> points = {{0, 0, 0}, {0, -100, 0}};
+  try {
+    SurfaceGrid::size_for(points, 1e-5, 2);
+    FAIL() << "taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.field(), "voxel");
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("1e+07 cells, the limit is 1048544"));
+  }
+  EXPECT_THROW(SurfaceGrid(points, points, 1e-5, 2), Error);
+  EXPECT_NO_THROW(SurfaceGrid(points, points, 1e-4, 2));
+}
+
+// A voxel far below the spacing: each point gets blocks of its own.
+TEST(SurfaceGridSize, RefusesMoreBlocksThanTheLimitAndSaysHowMany) {
+  const std::vector<Eigen::Vector3f> points = lone_points(100);
+  EXPECT_EQ(SurfaceGrid::size_for(lone_points(10), 0.01, 0).blocks, 1000U);
+  try {
+    SurfaceGrid::size_for(points, 0.01, 6);
+    FAIL() << "taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.field(), "voxel");
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("the limit is 2097152"));
+  }
+}
+
+TEST(SurfaceGrid, StopsWhenTold) {
+  std::stop_source stop;
+  stop.request_stop();
+  RunContext context;
+  context.stop = stop.get_token();
+  const std::vector<Eigen::Vector3f> points = lone_points(3);
+  EXPECT_THROW(SurfaceGrid(points, points, 0.1, 2, context), Error);
+  EXPECT_THROW(SurfaceGrid::size_for(points, 0.1, 2, context), Error);
 }
 
 }  // namespace

@@ -229,5 +229,44 @@ TEST(EstimateIndex, ForetellsWhatIndexingThenMakes) {
   EXPECT_GT(estimate.seconds, 0.0);
 }
 
+// It used to take memory until there was none.
+TEST(DescribeScene, RefusesAVoxelWhoseGridNobodyCouldHoldAndSoDoesTheEstimate) {
+  const SyntheticScene room = small_room(2);
+  IndexOptions options;
+  options.voxel_m = 1e-6;
+  const auto scans = [&] {
+    std::vector<Scan> made(1);
+    made[0].cloud = room.cloud;
+    return made;
+  };
+  for (const bool estimate : {false, true}) {
+    try {
+      if (estimate) {
+        estimate_index(scans(), options, {});
+      } else {
+        describe_scene("room", scans(), options, {});
+      }
+      ADD_FAILURE() << "taken";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);
+      EXPECT_EQ(error.field(), "voxel");
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("cells, the limit is"));
+    }
+  }
+}
+
+TEST(EstimateIndex, CountsTheGridOfAFineVoxel) {
+  const SyntheticScene room = small_room(2);
+  const auto served = [&](double voxel_m) {
+    std::vector<Scan> scans(1);
+    scans[0].cloud = room.cloud;
+    IndexOptions options;
+    options.voxel_m = voxel_m;
+    return estimate_index(std::move(scans), options, {}).served_bytes;
+  };
+  EXPECT_GT(served(0.005), room.cloud.size() * 2048) << "a block and more a point";
+  EXPECT_LT(served(0.2), served(0.005) / 10);
+}
+
 }  // namespace
 }  // namespace landmarkdb

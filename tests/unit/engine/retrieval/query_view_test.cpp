@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stop_token>
 
 #include <gtest/gtest.h>
 
@@ -81,6 +82,14 @@ TEST(ViewQuery, RefusesACloudTooSmallOrTooThinForTheResolution) {
   for (const PointCloud& cloud : {speck, line}) {
     EXPECT_THROW(view_query(clean_query(cloud), kOptions, 1, {}, timings), Error);
   }
+}
+
+TEST(CleanQuery, StopsWhenTold) {
+  std::stop_source stop;
+  stop.request_stop();
+  RunContext context;
+  context.stop = stop.get_token();
+  EXPECT_THROW(clean_query(testing::frame_in(testing::small_room(2), 1).cloud, context), Error);
 }
 
 }  // namespace
