@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kNearMetres = 0.5;
 constexpr double kNearRad = 0.21;
+constexpr double kLooseMetres = 0.8;
+constexpr double kLooseRad = 0.436;
 constexpr double kRightMetres = 0.10;
 constexpr double kRightRad = 0.0873;
 
@@ -64,9 +66,13 @@ Funnel follow(const PointCloud& cloud,
     funnel.proposals = proposals.size();
     for (const Proposal& proposal : proposals) {
       funnel.near_proposals += within(pose_of(proposal), truth, kNearMetres, kNearRad) ? 1U : 0U;
+      funnel.loose_proposals +=
+          same_pose(pose_of(proposal), truth, query.centre, kLooseMetres, kLooseRad) ? 1U : 0U;
     }
+    const auto settled = settle_best(
+        entry.wide, entry.grid, matches.view->test, proposals, query.centre, {}, context);
     const auto ranked =
-        rank_poses(entry.grid, matches.view->test, proposals, query.centre, {}, context);
+        rank_poses(entry.grid, matches.view->test, settled, query.centre, {}, context);
     for (std::size_t i = 0; i < ranked.size() && funnel.ranked < 0; ++i) {
       if (within(ranked[i].T_target_source, truth, kNearMetres, kNearRad))
         funnel.ranked = static_cast<int>(i);
@@ -75,6 +81,11 @@ Funnel follow(const PointCloud& cloud,
   std::sort(result.poses.begin(), result.poses.end(), [](const Assessed& a, const Assessed& b) {
     return a.score > b.score;
   });
+  for (const Assessed& pose : result.poses) {
+    if (pose.entry != right_entry) continue;
+    funnel.nearest_m = std::min(
+        funnel.nearest_m, (pose.T_entry_sensor.translation() - truth.translation()).norm());
+  }
   for (std::size_t i = 0; i < result.poses.size() && funnel.assessed < 0; ++i) {
     const Assessed& pose = result.poses[i];
     if (pose.entry == right_entry && within(pose.T_entry_sensor, truth, kRightMetres, kRightRad)) {

@@ -30,6 +30,7 @@ struct Settings {
   int frames = 10;    // a place
   std::uint64_t seed = 1000;
   std::size_t points = 600'000;  // a place
+  int only = -1;  // ask the frames of this place alone
   bool gravity = false;
   bool funnel = false;  // say at which stage each frame was lost
   int threads = 2;
@@ -182,6 +183,7 @@ int run(const Settings& settings) {
   Tally all;
   Tally informative;
   for (std::size_t p = 0; p < places.size(); ++p) {
+    if (settings.only >= 0 && p != static_cast<std::size_t>(settings.only)) continue;
     const bool known = p < static_cast<std::size_t>(settings.places);
     const auto poses = datasets::sample_camera_poses(
         places[p], static_cast<std::size_t>(settings.frames), settings.seed);
@@ -203,12 +205,14 @@ int run(const Settings& settings) {
       if (settings.gravity) options.up = frame.up_camera;
       const Funnel funnel =
           follow(frame.cloud, options, entries, levels, p, frame.T_scene_camera, context);
-      std::printf("#funnel keypoints %zu proposals %zu near %zu ranked %d assessed %d\n",
+      std::printf("#funnel keypoints %zu proposals %zu near %zu loose %zu ranked %d assessed %d nearest %.3f\n",
                   funnel.keypoints,
                   funnel.proposals,
                   funnel.near_proposals,
+                  funnel.loose_proposals,
                   funnel.ranked,
-                  funnel.assessed);
+                  funnel.assessed,
+                  funnel.nearest_m);
     }
   }
   print("all", all);
@@ -229,6 +233,7 @@ int main(int argc, char** argv) {
   app.add_option("--frames", settings.frames, "Frames a place");
   app.add_option("--seed", settings.seed, "Of the places, frames and noise");
   app.add_option("--points", settings.points, "Scanned points a place");
+  app.add_option("--only", settings.only, "Ask the frames of this place alone");
   app.add_flag("--gravity", settings.gravity, "Tell the query which way is up");
   app.add_flag("--funnel", settings.funnel, "Say at which stage each frame was lost");
   app.add_option("--threads", settings.threads, "Threads");

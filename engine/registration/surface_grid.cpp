@@ -12,14 +12,6 @@ namespace landmarkdb {
 
 namespace {
 
-constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
-constexpr int kLimit = 1 << 20;  // cells a side: 21 bits and a sign in each key
-constexpr std::uint64_t kHashFactor = 0x9e3779b97f4a7c15ULL;  // 2^64 / golden ratio (Knuth 6.4)
-
-std::size_t cell_in_block(const Eigen::Vector3i& cell) {
-  return static_cast<std::size_t>((cell.x() & 7) | ((cell.y() & 7) << 3) | ((cell.z() & 7) << 6));
-}
-
 constexpr std::size_t kStep = 4096;  // points between two looks at the stop token
 
 // Throws when a point lies more cells from zero than a key can hold.
@@ -94,8 +86,14 @@ SurfaceGrid::SurfaceGrid(std::span<const Eigen::Vector3f> points,
   assert(points.size() == normals.size() && "one normal a point");
   assert(cell_m > 0.0 && reach_cells >= 0 && "a grid needs a cell size");
   check_extent(points, cell_m);
-  keys_.assign(1024, kNoKey);
-  slots_.assign(1024, 0);
+  Cell first = Cell::Constant(kLimit);
+  Cell last = Cell::Constant(-kLimit);
+  for (const Eigen::Vector3f& point : points) {
+    const Cell cell = cell_of(point);
+    first = first.cwiseMin(block_of((cell.array() - reach_).matrix()));
+    last = last.cwiseMax(block_of((cell.array() + reach_).matrix()));
+  }
+  make_table(first, last);
   surfels_.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i % kStep == 0) context.check("grid");
@@ -105,39 +103,40 @@ SurfaceGrid::SurfaceGrid(std::span<const Eigen::Vector3f> points,
   }
 }
 
-SurfaceGrid::Cell SurfaceGrid::cell_of(const Eigen::Vector3f& p) const {
-  const Eigen::Array3f scaled = (p.array() * inverse_cell_).floor();
-  const auto limit = static_cast<float>(kLimit - 16);
-  // Clamped before the cast: a float beyond int is undefined behaviour, and nothing is stored out
-  // there.
-  return scaled.max(-limit).min(limit).cast<int>();
-}
-
-std::uint64_t SurfaceGrid::key_of(const Cell& block) {
-  const auto part = [](int v) { return static_cast<std::uint64_t>(v + kLimit) & 0x1fffffU; };
-  return part(block.x()) | (part(block.y()) << 21U) | (part(block.z()) << 42U);
-}
-
-std::size_t SurfaceGrid::find_slot(std::uint64_t key) const {
-  const std::size_t mask = keys_.size() - 1;
-  std::size_t slot = static_cast<std::size_t>((key * kHashFactor) >> 20U) & mask;
-  while (keys_[slot] != key && keys_[slot] != kNoKey) slot = (slot + 1) & mask;
-  return slot;
-}
-
-SurfaceGrid::Block& SurfaceGrid::block_at(std::uint64_t key) {
-  std::size_t slot = find_slot(key);
-  if (keys_[slot] == kNoKey) {
-    if (2 * (blocks_.size() + 1) > keys_.size()) {
-      grow_table();
-      slot = find_slot(key);
-    }
-    keys_[slot] = key;
-    slots_[slot] = static_cast<std::uint32_t>(blocks_.size());
-    blocks_.emplace_back();
-    blocks_.back().fill(0);
+// A table where it is small, even against the surfels; otherwise an empty hash table.
+void SurfaceGrid::make_table(const Cell& first, const Cell& last) {
+  constexpr double kMostOfTable = 1 << 22;  // 16 MiB
+  const Eigen::Array3d size = (last - first).cast<double>().array() + 1.0;
+  if ((size > 0.0).all() && size.prod() <= kMostOfTable) {
+    table_first_ = first;
+    table_size_ = size.cast<int>().matrix();
+    table_.assign(static_cast<std::size_t>(size.prod()), kNoBlock);
+    return;
   }
-  return blocks_[slots_[slot]];
+  constexpr std::size_t kFirstSlots = 1024;
+  keys_.assign(kFirstSlots, kNoKey);
+  slots_.assign(kFirstSlots, 0);
+}
+
+SurfaceGrid::Block& SurfaceGrid::block_at(const Cell& block) {
+  std::uint32_t* number = nullptr;
+  if (!table_.empty()) {
+    const Cell at = block - table_first_;
+    number = &table_[static_cast<std::size_t>(at.x() + table_size_.x() *
+                                                           (at.y() + table_size_.y() * at.z()))];
+    if (*number != kNoBlock) return blocks_[*number];
+  } else {
+    const std::uint64_t key = key_of(block);
+    if (2 * (blocks_.size() + 1) > keys_.size()) grow_table();
+    const std::size_t slot = find_slot(key);
+    if (keys_[slot] == key) return blocks_[slots_[slot]];
+    keys_[slot] = key;
+    number = &slots_[slot];
+  }
+  *number = static_cast<std::uint32_t>(blocks_.size());
+  blocks_.emplace_back();
+  blocks_.back().fill(0);
+  return blocks_.back();
 }
 
 void SurfaceGrid::grow_table() {
@@ -165,8 +164,7 @@ void SurfaceGrid::insert_around(std::uint32_t surfel) {
         const Eigen::Vector3f centre = (cell.cast<float>().array() + 0.5F).matrix() * cell_m_;
         const float distance = (centre - p).squaredNorm();
         if (distance > reach_squared) continue;
-        const Cell block(cell.x() >> kBlockBits, cell.y() >> kBlockBits, cell.z() >> kBlockBits);
-        std::uint32_t& stored = block_at(key_of(block))[cell_in_block(cell)];
+        std::uint32_t& stored = block_at(block_of(cell))[cell_in_block(cell)];
         if (stored == 0 || (centre - surfels_[stored - 1].point).squaredNorm() > distance) {
           stored = surfel + 1;
         }
@@ -175,18 +173,8 @@ void SurfaceGrid::insert_around(std::uint32_t surfel) {
   }
 }
 
-const Surfel* SurfaceGrid::near(const Eigen::Vector3f& p) const {
-  const Cell cell = cell_of(p);
-  const Cell block(cell.x() >> kBlockBits, cell.y() >> kBlockBits, cell.z() >> kBlockBits);
-  const std::uint64_t key = key_of(block);
-  const std::size_t slot = find_slot(key);
-  if (keys_[slot] != key) return nullptr;
-  const std::uint32_t stored = blocks_[slots_[slot]][cell_in_block(cell)];
-  return stored == 0 ? nullptr : &surfels_[stored - 1];
-}
-
 std::size_t SurfaceGrid::memory_bytes() const {
-  return blocks_.size() * sizeof(Block) +
+  return blocks_.size() * sizeof(Block) + table_.size() * sizeof(std::uint32_t) +
          keys_.size() * (sizeof(std::uint64_t) + sizeof(std::uint32_t)) +
          surfels_.size() * sizeof(Surfel);
 }

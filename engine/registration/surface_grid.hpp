@@ -26,8 +26,8 @@ struct GridSize {
 };
 
 // "What surface is near here?", answered in a few nanoseconds: every cell within `reach` cells of
-// the surface names the surfel nearest to the cell's centre. Sparse: blocks of 8 x 8 x 8 cells in a
-// hash table.
+// the surface names the surfel nearest to the cell's centre. Sparse: blocks of 8 x 8 x 8 cells,
+// found through a table of the box that holds them, or a hash table where that would be too large.
 //
 // Built once, then immutable and thread-safe. A copy of the surfels is kept.
 class SurfaceGrid {
@@ -55,7 +55,13 @@ class SurfaceGrid {
                            const RunContext& context = {});
 
   // The surfel near `p`, or nullptr when no surface is within reach of p's cell.
-  const Surfel* near(const Eigen::Vector3f& p) const;
+  const Surfel* near(const Eigen::Vector3f& p) const {
+    const Cell cell = cell_of(p);
+    const std::uint32_t* block = find_block(block_of(cell));
+    if (block == nullptr) return nullptr;
+    const std::uint32_t stored = block[cell_in_block(cell)];
+    return stored == 0 ? nullptr : &surfels_[stored - 1];
+  }
 
   float cell_m() const { return cell_m_; }
   // Beyond this distance from the surface near() finds nothing.
@@ -69,12 +75,57 @@ class SurfaceGrid {
   using Block = std::array<std::uint32_t, kBlockCells>;  // surfel index + 1; 0: none
   using Cell = Eigen::Vector3i;
 
-  Cell cell_of(const Eigen::Vector3f& p) const;
-  static std::uint64_t key_of(const Cell& block);
-  std::size_t find_slot(std::uint64_t key) const;
-  Block& block_at(std::uint64_t key);
+  static constexpr int kLimit = 1 << 20;  // cells a side: 21 bits and a sign in each key
+  static constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
+  static constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};
+
+  Cell cell_of(const Eigen::Vector3f& p) const {
+    const Eigen::Array3f scaled = (p.array() * inverse_cell_).floor();
+    constexpr auto kFarthest = static_cast<float>(kLimit - 16);
+    // Clamped before the cast: a float beyond int is undefined behaviour, and nothing is stored out
+    // there.
+    return scaled.max(-kFarthest).min(kFarthest).cast<int>();
+  }
+  static Cell block_of(const Cell& cell) {
+    return {cell.x() >> kBlockBits, cell.y() >> kBlockBits, cell.z() >> kBlockBits};
+  }
+  static std::size_t cell_in_block(const Cell& cell) {
+    constexpr int kMask = (1 << kBlockBits) - 1;
+    return static_cast<std::size_t>((cell.x() & kMask) | ((cell.y() & kMask) << kBlockBits) |
+                                    ((cell.z() & kMask) << (2 * kBlockBits)));
+  }
+  static std::uint64_t key_of(const Cell& block) {
+    const auto part = [](int v) { return static_cast<std::uint64_t>(v + kLimit) & 0x1fffffU; };
+    return part(block.x()) | (part(block.y()) << 21U) | (part(block.z()) << 42U);
+  }
+  std::size_t find_slot(std::uint64_t key) const {
+    constexpr std::uint64_t kHashFactor = 0x9e3779b97f4a7c15ULL;  // 2^64 / golden ratio (Knuth 6.4)
+    const std::size_t mask = keys_.size() - 1;
+    std::size_t slot = static_cast<std::size_t>((key * kHashFactor) >> 20U) & mask;
+    while (keys_[slot] != key && keys_[slot] != kNoKey) slot = (slot + 1) & mask;
+    return slot;
+  }
+  // The block's cells, or nullptr.
+  const std::uint32_t* find_block(const Cell& block) const {
+    std::uint32_t number = kNoBlock;
+    if (!table_.empty()) {
+      const Cell at = block - table_first_;
+      if ((at.array() < 0).any() || (at.array() >= table_size_.array()).any()) return nullptr;
+      number = table_[static_cast<std::size_t>(at.x() + table_size_.x() *
+                                                            (at.y() + table_size_.y() * at.z()))];
+      if (number == kNoBlock) return nullptr;
+    } else {
+      const std::uint64_t key = key_of(block);
+      const std::size_t slot = find_slot(key);
+      if (keys_[slot] != key) return nullptr;
+      number = slots_[slot];
+    }
+    return blocks_[number].data();
+  }
+  Block& block_at(const Cell& block);
   void grow_table();
   void insert_around(std::uint32_t surfel);
+  void make_table(const Cell& first, const Cell& last);
 
   float cell_m_;
   float inverse_cell_;
@@ -83,6 +134,11 @@ class SurfaceGrid {
   // Open addressing: keys_[slot] with blocks_[slots_[slot]]; kNoKey marks a free slot.
   std::vector<std::uint64_t> keys_;
   std::vector<std::uint32_t> slots_;
+  // The number of each block of the box from table_first_ on, x fastest, kNoBlock where there is
+  // none; empty where the box is too large.
+  std::vector<std::uint32_t> table_;
+  Cell table_first_ = Cell::Zero();
+  Cell table_size_ = Cell::Zero();
   std::vector<Block> blocks_;
 };
 

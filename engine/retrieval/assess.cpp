@@ -57,6 +57,14 @@ void expect_object(Evidence& evidence) {
   evidence.coverage = 1.0;
 }
 
+VerifyOptions verify_options(const Meeting& meeting) {
+  VerifyOptions options;
+  if (meeting.tolerance_m > 0.0) {
+    options.surface_tolerance_cells = meeting.tolerance_m / meeting.target.cell_m();
+  }
+  return options;
+}
+
 struct Patch {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
@@ -95,7 +103,10 @@ bool same_spot(const Assessed& a,
                    a.T_entry_sensor, b.T_entry_sensor, query_centre, translation_m, rotation_rad);
 }
 
-Assessed assess_coarse(const Meeting& meeting, const Eigen::Isometry3d& T_entry_sensor) {
+Assessed assess_coarse(const Meeting& meeting,
+                       const Entry& entry,
+                       const CleanQuery& query,
+                       const Eigen::Isometry3d& T_entry_sensor) {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
   for (const std::uint32_t i : spread(meeting.source.size(), kCoarsePoints)) {
@@ -110,10 +121,22 @@ Assessed assess_coarse(const Meeting& meeting, const Eigen::Isometry3d& T_entry_
   assessed.icp = refine_icp(
       meeting.target, points, normals, turned(T_entry_sensor, meeting.entry_is_source), options);
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
-  measure_overlap(
-      meeting.target, points, normals, assessed.icp.T_target_source, {}, assessed.evidence);
-  assessed.score = drawn_in(0.5 * (assessed.evidence.overlap + assessed.evidence.balanced),
-                            static_cast<double>(meeting.source.size()));
+  Evidence& evidence = assessed.evidence;
+  const VerifyOptions verify = verify_options(meeting);
+  measure_overlap(meeting.target, points, normals, assessed.icp.T_target_source, verify, evidence);
+  if (meeting.entry_is_source) {
+    evidence.explained = evidence.coverage = 1.0;
+  } else {
+    measure_sight(query.ranges,
+                  entry.wide_points,
+                  assessed.T_entry_sensor.inverse(),
+                  entry.wide.cell_m(),
+                  verify,
+                  evidence);
+  }
+  assessed.score = quality(evidence,
+                           meeting.entry_is_source ? 1.0 : possible_in_place(evidence),
+                           static_cast<double>(meeting.source.size()));
   return assessed;
 }
 
@@ -131,18 +154,19 @@ void assess_fine(const Meeting& meeting,
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
   Evidence& evidence = assessed.evidence;
   evidence = {};
+  const VerifyOptions verify = verify_options(meeting);
   const Eigen::Vector3d viewpoint =
       assessed.T_entry_sensor * query.cloud.viewpoints[0].cast<double>();
   const Patch seen = meeting.entry_is_source ? facing(meeting, viewpoint) : Patch{};
   using Vectors = std::span<const Eigen::Vector3f>;
   const Vectors points = meeting.entry_is_source ? Vectors(seen.points) : meeting.source;
   const Vectors normals = meeting.entry_is_source ? Vectors(seen.normals) : meeting.source_normals;
-  measure_overlap(meeting.target, points, normals, assessed.icp.T_target_source, {}, evidence);
+  measure_overlap(meeting.target, points, normals, assessed.icp.T_target_source, verify, evidence);
   measure_sight(query.ranges,
                 entry.sight_points,
                 assessed.T_entry_sensor.inverse(),
                 entry.record().prepared.resolution_m,
-                {},
+                verify,
                 evidence);
   evidence.observability =
       observability(assessed.icp, extent_of(meeting.source), meeting.source.size());

@@ -44,10 +44,17 @@ struct Meeting {
   std::span<const Eigen::Vector3f> source;
   std::span<const Eigen::Vector3f> source_normals;
   bool entry_is_source = false;
+  // Plane distance at which a point still lies on the surface. Entries described at different
+  // resolutions compete, so the finest sets it for all.
+  double tolerance_m = 0.0;
 };
 
-// A quick refinement with few points: enough to rank candidates.
-Assessed assess_coarse(const Meeting& meeting, const Eigen::Isometry3d& T_entry_sensor);
+// A quick refinement with few points, and the sight of the entry's wide grid: enough to rank
+// candidates.
+Assessed assess_coarse(const Meeting& meeting,
+                       const Entry& entry,
+                       const CleanQuery& query,
+                       const Eigen::Isometry3d& T_entry_sensor);
 
 // Refinement with all points, and all the evidence.
 void assess_fine(const Meeting& meeting,

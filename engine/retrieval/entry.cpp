@@ -5,12 +5,14 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
+#include "engine/features/structure_keypoints.hpp"
 
 namespace landmarkdb {
 
 namespace {
 
 constexpr int kReachCells = 2;                 // 10 cm in a room described at 5 cm
+constexpr double kWideCells = 3.0;             // 15 cm there
 constexpr std::size_t kSightPoints = 200'000;  // free space is judged on what of these is in view
 constexpr std::size_t kTestPoints = 512;
 
@@ -36,6 +38,17 @@ GridSize grid_size(std::span<const Eigen::Vector3f> points,
   return SurfaceGrid::size_for(points, voxel_m, kReachCells, context);
 }
 
+SurfaceGrid make_wide_grid(const PreparedCloud& cloud) {
+  const double cell_m = kWideCells * cloud.resolution_m;
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+  for (const std::uint32_t i : uniform_keypoints(cloud, cell_m).index) {
+    points.push_back(cloud.points[i]);
+    normals.push_back(cloud.normals[i]);
+  }
+  return SurfaceGrid(points, normals, cell_m, kReachCells);
+}
+
 std::vector<std::uint32_t> spread(std::size_t size, std::size_t count) {
   const std::size_t taken = std::min(size, count);
   std::vector<std::uint32_t> indices(taken);
@@ -48,13 +61,17 @@ std::vector<std::uint32_t> spread(std::size_t size, std::size_t count) {
 Entry make_entry(CatalogEntry stored, const RunContext& context) {
   const SceneRecord& record = *stored.record;
   const PreparedCloud& cloud = record.prepared;
+  const bool is_object = record.kind == EntryKind::kObject;
   constexpr std::uint64_t kSeed = 1;  // an entry's own sample: the same for every query
   Entry entry{.stored = std::move(stored),
               .grid = grid_of_scene(record, context),
+              .wide = is_object ? SurfaceGrid({}, {}, 1.0, 0) : make_wide_grid(cloud),
+              .wide_points = {},
               .test = select_test_points(cloud.points, cloud.normals, kTestPoints, kSeed),
               .sight_points = {},
               .centre = Eigen::Vector3d::Zero(),
               .extent_m = 0.0};
+  for (const Surfel& surfel : entry.wide.surfels()) entry.wide_points.push_back(surfel.point);
   for (const Eigen::Vector3f& point : cloud.points) entry.centre += point.cast<double>();
   const auto points = static_cast<double>(std::max<std::size_t>(cloud.size(), 1));
   entry.centre /= points;

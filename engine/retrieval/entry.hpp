@@ -18,6 +18,8 @@ namespace landmarkdb {
 struct Entry {
   CatalogEntry stored;
   SurfaceGrid grid;
+  SurfaceGrid wide;  // of places: the same surface in larger cells
+  std::vector<Eigen::Vector3f> wide_points;  // of its surfels
   TestPoints test;                            // of the entry's own surface, for objects
   std::vector<Eigen::Vector3f> sight_points;  // spread over the whole surface, for free space
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean of the points
@@ -34,6 +36,9 @@ SurfaceGrid make_grid(const PreparedCloud& cloud, const RunContext& context = {}
 GridSize grid_size(std::span<const Eigen::Vector3f> points,
                    double voxel_m,
                    const RunContext& context);
+
+// The grid on which a proposal is first tested, in cells a few times as large.
+SurfaceGrid make_wide_grid(const PreparedCloud& cloud);
 
 // Throws what make_grid does, naming the scene, and what `context.check` does.
 Entry make_entry(CatalogEntry stored, const RunContext& context = {});

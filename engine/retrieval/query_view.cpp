@@ -8,6 +8,7 @@
 #include "engine/cloud/sanitise.hpp"
 #include "engine/features/describe_shot.hpp"
 #include "engine/features/detect_keypoints.hpp"
+#include "engine/features/range_noise.hpp"
 #include "engine/retrieval/entry.hpp"
 #include "engine/retrieval/feature_options.hpp"
 
@@ -31,6 +32,21 @@ Keypoints spread_keypoints(const Keypoints& keypoints) {
     kept.index.push_back(keypoints.index[i]);
   }
   return kept;
+}
+
+// A query shows little, and each keypoint of it is another chance: where the usual spacing gives
+// few, it is halved.
+constexpr std::size_t kFewKeypoints = 400;
+
+Keypoints detect_enough(const PreparedCloud& cloud,
+                        const FeatureOptions& features,
+                        const RunContext& context) {
+  KeypointOptions options = keypoint_options(features);
+  Keypoints keypoints = detect_keypoints(cloud, options, context);
+  if (keypoints.size() >= kFewKeypoints) return keypoints;
+  constexpr double kDenser = 0.5;
+  options.spacing_m *= kDenser;
+  return detect_keypoints(cloud, options, context);
 }
 
 }  // namespace
@@ -60,6 +76,7 @@ QueryView view_query(const CleanQuery& query,
     const StageTimer timer(timings.preprocess);
     view.prepared = prepare_cloud(
         query.cloud, query.counts, {options.voxel_m, options.normal_radius_m}, context);
+    flatten_range_noise(view.prepared, options.normal_radius_m, context);
     view.test = select_test_points(view.prepared.points, view.prepared.normals, kTestPoints, seed);
     for (const std::uint32_t i : spread(view.prepared.size(), kSamplePoints)) {
       view.sample_points.push_back(view.prepared.points[i]);
@@ -69,8 +86,7 @@ QueryView view_query(const CleanQuery& query,
   Keypoints keypoints;
   {
     const StageTimer timer(timings.keypoints);
-    keypoints =
-        spread_keypoints(detect_keypoints(view.prepared, keypoint_options(options), context));
+    keypoints = spread_keypoints(detect_enough(view.prepared, options, context));
   }
   const StageTimer timer(timings.describe);
   view.descriptors = describe_shot(view.prepared, keypoints, options.shot_radius_m, context);

@@ -5,6 +5,7 @@
 
 #include "engine/base/parallel.hpp"
 #include "engine/geometry/pose.hpp"
+#include "engine/registration/settle.hpp"
 
 namespace landmarkdb {
 
@@ -21,11 +22,9 @@ std::vector<Scored> score_all(const SurfaceGrid& target,
                               std::size_t points,
                               std::span<const Proposal> proposals,
                               std::span<const std::uint32_t> which,
-                              float hopeless,
+                              const ScoreOptions& score,
                               const RunContext& context) {
   std::vector<Scored> scored(which.size());
-  ScoreOptions score;
-  score.hopeless = hopeless;
   parallel_chunks(which.size(), context.threads, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kBetweenChecks = 4096;
     for (std::size_t i = begin; i < end; ++i) {
@@ -43,25 +42,31 @@ std::vector<Scored> score_all(const SurfaceGrid& target,
   return scored;
 }
 
+struct GroupLimit {
+  std::size_t kept = 0;
+  std::size_t of_group = 0;
+  double apart_m = 0.0;
+  double apart_rad = 0.0;
+};
+
 // The best proposals, but only so many of each place: a right pose is proposed hundreds of times,
 // and the look-alike it must be held against has to reach the finer test too.
 std::vector<std::uint32_t> best_of_each_place(std::span<const Scored> sorted,
                                               std::span<const Proposal> proposals,
                                               const Eigen::Vector3d& centre,
-                                              double cell_m,
-                                              const RankOptions& options) {
+                                              const GroupLimit& limit) {
   struct Group {
     Eigen::Vector3f centre;
     Eigen::Matrix3f R;
     std::size_t members = 0;
   };
   const Eigen::Vector3f middle = centre.cast<float>();
-  const auto apart = static_cast<float>(options.group_translation_cells * cell_m);
-  const auto least_trace = static_cast<float>(1.0 + 2.0 * std::cos(options.group_rotation_rad));
+  const auto apart = static_cast<float>(limit.apart_m);
+  const auto least_trace = static_cast<float>(1.0 + 2.0 * std::cos(limit.apart_rad));
   std::vector<Group> groups;
   std::vector<std::uint32_t> kept;
   for (const Scored& scored : sorted) {
-    if (kept.size() >= options.kept_first || scored.score <= 0.0F) break;
+    if (kept.size() >= limit.kept || scored.score <= 0.0F) break;
     const Proposal& proposal = proposals[scored.proposal];
     const Eigen::Vector3f there = proposal.R_target_source * middle + proposal.t_target_source;
     auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& other) {
@@ -72,7 +77,7 @@ std::vector<std::uint32_t> best_of_each_place(std::span<const Scored> sorted,
       groups.push_back({there, proposal.R_target_source, 0});
       group = groups.end() - 1;
     }
-    if (group->members >= options.kept_of_group) continue;
+    if (group->members >= limit.of_group) continue;
     ++group->members;
     kept.push_back(scored.proposal);
   }
@@ -97,6 +102,46 @@ bool same_pose(const Eigen::Isometry3d& a,
          rotation_angle_rad(a.linear().transpose() * b.linear()) <= rotation_rad;
 }
 
+std::vector<Proposal> settle_best(const SurfaceGrid& wide,
+                                  const SurfaceGrid& fine,
+                                  const TestPoints& test,
+                                  std::span<const Proposal> proposals,
+                                  const Eigen::Vector3d& centre,
+                                  const SettleBestOptions& options,
+                                  const RunContext& context) {
+  std::vector<std::uint32_t> all(proposals.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  const std::vector<Scored> scored =
+      score_all(wide,
+                test,
+                options.first_points,
+                proposals,
+                all,
+                {.first_look = options.first_look, .hopeless = options.hopeless},
+                context);
+  const std::vector<std::uint32_t> better =
+      best_of_each_place(scored,
+                         proposals,
+                         centre,
+                         {options.kept,
+                          options.kept_of_group,
+                          options.group_translation_cells * wide.cell_m(),
+                          options.group_rotation_rad});
+  std::vector<Proposal> settled;
+  settled.reserve(better.size());
+  for (const std::uint32_t i : better) settled.push_back(proposals[i]);
+  parallel_chunks(settled.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Proposal& proposal = settled[i];
+      settle_pose(
+          wide, test, {.iterations = 2}, proposal.R_target_source, proposal.t_target_source);
+      settle_pose(
+          fine, test, {.iterations = 2}, proposal.R_target_source, proposal.t_target_source);
+    }
+  });
+  return settled;
+}
+
 std::vector<RankedPose> rank_poses(const SurfaceGrid& target,
                                    const TestPoints& test,
                                    std::span<const Proposal> proposals,
@@ -105,13 +150,24 @@ std::vector<RankedPose> rank_poses(const SurfaceGrid& target,
                                    const RunContext& context) {
   std::vector<std::uint32_t> all(proposals.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-  std::vector<Scored> scored =
-      score_all(target, test, options.first_points, proposals, all, options.hopeless, context);
+  std::vector<Scored> scored = score_all(
+      target, test, options.first_points, proposals, all, {.hopeless = options.hopeless}, context);
 
   const std::vector<std::uint32_t> better =
-      best_of_each_place(scored, proposals, centre, target.cell_m(), options);
-  scored =
-      score_all(target, test, options.second_points, proposals, better, options.hopeless, context);
+      best_of_each_place(scored,
+                         proposals,
+                         centre,
+                         {options.kept_first,
+                          options.kept_of_group,
+                          options.group_translation_cells * target.cell_m(),
+                          options.group_rotation_rad});
+  scored = score_all(target,
+                     test,
+                     options.second_points,
+                     proposals,
+                     better,
+                     {.hopeless = options.hopeless},
+                     context);
 
   std::vector<RankedPose> ranked;
   for (const Scored& s : scored) {

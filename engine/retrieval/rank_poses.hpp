@@ -28,6 +28,28 @@ struct RankOptions {
   double same_rotation_rad = 0.12;
 };
 
+struct SettleBestOptions {
+  std::size_t first_points = 48;  // of the test points, for every proposal on the wide grid
+  std::size_t kept = 1500;        // to be settled
+  std::size_t kept_of_group = 8;  // of those, at most so many of one place
+  double group_translation_cells = 3.0;
+  double group_rotation_rad = 0.175;
+  std::size_t first_look = 12;  // points after which a hopeless proposal is given up
+  float hopeless = 0.2F;
+};
+
+// What one local reference frame proposes is off by decimetres and tens of degrees where the
+// descriptor's support was half hidden, too far for the fine grid to tell it from chance. So every
+// proposal is tested on `wide`, the same surface in cells a few times as large, and the better ones
+// are settled there and on `fine` before their score is asked for.
+std::vector<Proposal> settle_best(const SurfaceGrid& wide,
+                                  const SurfaceGrid& fine,
+                                  const TestPoints& test,
+                                  std::span<const Proposal> proposals,
+                                  const Eigen::Vector3d& centre,
+                                  const SettleBestOptions& options,
+                                  const RunContext& context);
+
 struct RankedPose {
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
   float score = 0.0F;

@@ -21,7 +21,7 @@ struct Quota {
   std::size_t each = 0;
 };
 constexpr Quota kCoarse{.best = 60, .entries = 10, .each = 8};
-constexpr Quota kFine{.best = 12, .entries = 6, .each = 2};
+constexpr Quota kFine{.best = 16, .entries = 6, .each = 4};
 
 // Those of `sorted` (best first) that the quota lets through, in their order.
 template <typename Item, typename EntryOf>
@@ -53,7 +53,10 @@ std::vector<Assessed> assess_all_coarse(const SearchInput& input,
         for (std::size_t i = begin; i < end; ++i) {
           input.context.check("icp");
           const EntryMatches& matches = result.matches[candidates[i].matches];
-          assessed[i] = assess_coarse(meeting_of(matches), candidates[i].T_entry_sensor);
+          assessed[i] = assess_coarse(meeting_of(matches),
+                                      input.entries[matches.entry],
+                                      input.query,
+                                      candidates[i].T_entry_sensor);
           assessed[i].entry = matches.entry;
           assessed[i].matches = candidates[i].matches;
           assessed[i].correspondence = candidates[i].correspondence;

@@ -20,9 +20,22 @@ constexpr std::size_t kNeighbours = 60;
 constexpr std::size_t kNeighboursAPlace = 20;
 constexpr std::size_t kMostNeighbours = 200;
 
-std::size_t neighbours_for(std::size_t places) {
-  return std::min(kMostNeighbours, kNeighbours + kNeighboursAPlace * (places - 1));
+// A frame of bare walls has a few dozen keypoints: each then gets more neighbours, up to as many
+// proposals as a cluttered one makes.
+constexpr std::size_t kProposalsAPlace = 50'000;
+constexpr std::size_t kMostNeighboursOfFew = 400;
+
+std::size_t neighbours_for(std::size_t places, std::size_t keypoints) {
+  const std::size_t usual =
+      std::min(kMostNeighbours, kNeighbours + kNeighboursAPlace * (places - 1));
+  const std::size_t affordable = places * kProposalsAPlace / std::max<std::size_t>(keypoints, 1);
+  return std::clamp(affordable, usual, kMostNeighboursOfFew);
 }
+
+// The proposals to be settled are shared among the places.
+constexpr std::size_t kSettled = 4000;
+constexpr std::size_t kSettledAPlace = 1500;
+constexpr std::size_t kSettledAtLeast = 300;
 
 // A query of fewer voxels than this is too small a thing to be told apart at the entry's
 // resolution.
@@ -34,7 +47,7 @@ void match_level(const SearchInput& input,
                  const QueryView& view,
                  SearchResult& result) {
   const StageTimer timer(input.timings.match);
-  const std::size_t k = neighbours_for(level.entries.size());
+  const std::size_t k = neighbours_for(level.entries.size(), view.descriptors.size());
   std::vector<DescriptorMatch> found;
   // The level's own index is exact and Euclidean; another is made when it is asked for.
   std::shared_ptr<const DescriptorIndex> other;
@@ -64,6 +77,7 @@ void match_level(const SearchInput& input,
 
 void propose_and_rank(const SearchInput& input,
                       std::size_t m,
+                      std::size_t settled_each,
                       SearchResult& result,
                       std::vector<Candidate>& candidates) {
   const StageTimer timer(input.timings.pose);
@@ -75,13 +89,34 @@ void propose_and_rank(const SearchInput& input,
                           matches.view->descriptors,
                           gravity_of(input.options, entry.record()),
                           prior_of(input, entry.record()));
+  const std::vector<Proposal> settled = settle_best(entry.wide,
+                                                    entry.grid,
+                                                    matches.view->test,
+                                                    proposals,
+                                                    input.query.centre,
+                                                    {.kept = settled_each},
+                                                    input.context);
   const std::vector<RankedPose> survivors =
-      rank_poses(entry.grid, matches.view->test, proposals, input.query.centre, {}, input.context);
+      rank_poses(entry.grid, matches.view->test, settled, input.query.centre, {}, input.context);
   for (const RankedPose& ranked : survivors) {
     candidates.push_back({m, ranked.T_target_source, ranked.score, ranked.correspondence});
   }
   result.matches[m].poses.proposals = proposals.size();
   result.matches[m].poses.survivors = survivors.size();
+}
+
+// The tolerance at which the entry's surface counts as met: that of the finest entry asked, but not
+// less than what the entry's own resolution can tell.
+double common_tolerance_m(const SearchInput& input, const Entry& entry) {
+  constexpr double kCells = 0.75;
+  constexpr double kLeastCells = 0.4;
+  double finest_m = entry.grid.cell_m();
+  for (const Level& level : input.levels) {
+    const bool asked = std::any_of(
+        level.entries.begin(), level.entries.end(), [&](std::size_t e) { return input.wanted[e]; });
+    if (asked) finest_m = std::min(finest_m, level.options.voxel_m);
+  }
+  return std::max(kCells * finest_m, kLeastCells * entry.grid.cell_m());
 }
 
 }  // namespace
@@ -102,15 +137,16 @@ void search_places(const SearchInput& input, SearchResult& result) {
     }
     const QueryView& view = input.views.at(query_features(level.options, input.options));
     if (view.prepared.size() < kFewestVoxels || view.descriptors.size() == 0) continue;
-    const std::size_t first = result.matches.size();
     if (asked.size() == level.entries.size()) {
       match_level(input, level, view, result);
     } else {
       match_level(input, make_level(input.entries, asked), view, result);
     }
-    for (std::size_t m = first; m < result.matches.size(); ++m) {
-      propose_and_rank(input, m, result, candidates);
-    }
+  }
+  const std::size_t places = std::max<std::size_t>(result.matches.size(), 1);
+  const std::size_t settled_each = std::clamp(kSettled / places, kSettledAtLeast, kSettledAPlace);
+  for (std::size_t m = 0; m < result.matches.size(); ++m) {
+    propose_and_rank(input, m, settled_each, result, candidates);
   }
   if (candidates.empty()) {
     if (result.lost_at.empty()) result.lost_at = result.matches.empty() ? "keypoints" : "pose";
@@ -122,7 +158,8 @@ void search_places(const SearchInput& input, SearchResult& result) {
       [&](const EntryMatches& matches) {
         return Meeting{.target = input.entries[matches.entry].grid,
                        .source = matches.view->sample_points,
-                       .source_normals = matches.view->sample_normals};
+                       .source_normals = matches.view->sample_normals,
+                       .tolerance_m = common_tolerance_m(input, input.entries[matches.entry])};
       },
       result);
 }

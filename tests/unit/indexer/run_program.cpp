@@ -69,6 +69,15 @@ bool drain(int descriptor, std::string& text) {
 
 }  // namespace
 
+bool has_terminals() {
+  int ours = -1;
+  int theirs = -1;
+  if (::openpty(&ours, &theirs, nullptr, nullptr, nullptr) != 0) return false;
+  ::close(ours);
+  ::close(theirs);
+  return true;
+}
+
 RunResult run_program(const std::string& name,
                       const std::vector<std::string>& arguments,
                       const RunOptions& options) {

@@ -24,6 +24,10 @@ struct RunResult {
   std::string err;
 };
 
+// False where no pseudo-terminal can be had (a bare container without /dev/pts): then `signal_at`
+// does not work.
+bool has_terminals();
+
 // Runs an installed or built program, found in the folder that LANDMARKDB_BIN names, to its end.
 RunResult run_program(const std::string& name,
                       const std::vector<std::string>& arguments,

@@ -208,6 +208,7 @@ TEST_F(IndexerTrouble, ADamagedDatabaseIsStatus5AndSaysWhere) {
 }
 
 TEST_F(IndexerTrouble, SigintWhileIndexingLeavesTheDatabaseAsItWas) {
+  if (!testing::has_terminals()) GTEST_SKIP() << "no pseudo-terminals: is /dev/pts mounted?";
   add("room");
   const auto before = contents();
   const std::vector<std::string> files_before = files();
@@ -223,6 +224,7 @@ TEST_F(IndexerTrouble, SigintWhileIndexingLeavesTheDatabaseAsItWas) {
 }
 
 TEST_F(IndexerTrouble, SigintOnANewDatabaseLeavesNone) {
+  if (!testing::has_terminals()) GTEST_SKIP() << "no pseudo-terminals: is /dev/pts mounted?";
   const std::vector<std::string> files_before = files();
   const RunResult result =
       run({"add", "room", scan(), "--voxel", "0.02", "--radius", "1", "--threads", "1"},

@@ -1,0 +1,162 @@
+#include "engine/features/range_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "engine/base/parallel.hpp"
+#include "engine/cloud/voxel_grid.hpp"
+#include "engine/features/cell_grid.hpp"
+
+namespace landmarkdb {
+namespace {
+
+constexpr double kCellsPerRadius = 2.0;  // as in describe_shot
+constexpr std::size_t kBlock = 256;      // points between two looks at the stop request
+constexpr std::size_t kFewestOfBin = 50;
+constexpr double kFlattest = 0.25;  // share of a bin's points that are taken for planar
+
+struct PlaneFit {
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  float sigma_m = std::numeric_limits<float>::infinity();
+};
+
+PlaneFit fit_plane(const CellGrid& grid,
+                   const Eigen::Vector3f& at,
+                   float radius_m,
+                   std::vector<CellGrid::Found>& found) {
+  constexpr std::size_t kFewest = 6;
+  PlaneFit fit;
+  grid.within(at, radius_m, found);
+  if (found.size() < kFewest) return fit;
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  for (const CellGrid::Found& f : found) {
+    const Eigen::Vector3f d = grid.point(f.place) - at;
+    mean += d;
+    squares.noalias() += d * d.transpose();
+  }
+  const auto n = static_cast<float>(found.size());
+  mean /= n;
+  const Eigen::Matrix3f covariance = squares / n - mean * mean.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(covariance);
+  fit.mean = at + mean;
+  fit.normal = solver.eigenvectors().col(0);
+  fit.sigma_m = std::sqrt(std::max(solver.eigenvalues()(0), 0.0F));
+  if (!fit.normal.allFinite()) fit.sigma_m = std::numeric_limits<float>::infinity();
+  return fit;
+}
+
+float range_of(const PreparedCloud& cloud, std::size_t i) {
+  const std::size_t which = cloud.viewpoint_index.empty() ? 0 : cloud.viewpoint_index[i];
+  return (cloud.points[i] - cloud.viewpoints[which]).norm();
+}
+
+std::size_t bin_of(double first_range_m, float range_m) {
+  if (!(range_m > first_range_m)) return 0;
+  return static_cast<std::size_t>(std::log(static_cast<double>(range_m) / first_range_m) /
+                                  std::log(RangeNoise::kStep));
+}
+
+// Bins of too few points take the next nearer one's; and noise does not fall with the range, so
+// what a cluttered bin shows beyond any further one is its clutter.
+void make_monotonous(std::vector<float>& sigma_m) {
+  for (std::size_t i = 1; i < sigma_m.size(); ++i) {
+    if (sigma_m[i] < 0.0F) sigma_m[i] = sigma_m[i - 1];
+  }
+  for (std::size_t i = sigma_m.size(); i-- > 1;) {
+    sigma_m[i - 1] = sigma_m[i - 1] < 0.0F ? 0.0F : std::min(sigma_m[i - 1], sigma_m[i]);
+  }
+}
+
+}  // namespace
+
+float RangeNoise::at(float range_m) const {
+  if (sigma_m.empty()) return 0.0F;
+  return sigma_m[std::min(bin_of(first_range_m, range_m), sigma_m.size() - 1)];
+}
+
+RangeNoise measure_range_noise(const PreparedCloud& cloud,
+                               double radius_m,
+                               const RunContext& context) {
+  RangeNoise noise;
+  noise.first_range_m = 10.0 * cloud.resolution_m;
+  if (cloud.viewpoints.empty()) return noise;
+  const CellGrid grid(cloud.points, radius_m / kCellsPerRadius);
+  std::vector<float> sigma(cloud.size());
+  parallel_chunks(cloud.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<CellGrid::Found> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      if ((i - begin) % kBlock == 0) context.check("preprocess");
+      sigma[i] = fit_plane(grid, cloud.points[i], static_cast<float>(radius_m), found).sigma_m;
+    }
+  });
+  std::vector<std::vector<float>> bins;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!std::isfinite(sigma[i])) continue;
+    const std::size_t bin = bin_of(noise.first_range_m, range_of(cloud, i));
+    if (bin >= bins.size()) bins.resize(bin + 1);
+    bins[bin].push_back(sigma[i]);
+  }
+  for (std::vector<float>& bin : bins) {
+    if (bin.size() < kFewestOfBin) {
+      noise.sigma_m.push_back(-1.0F);
+      continue;
+    }
+    const auto at =
+        bin.begin() + static_cast<std::ptrdiff_t>(kFlattest * static_cast<double>(bin.size()));
+    std::nth_element(bin.begin(), at, bin.end());
+    noise.sigma_m.push_back(*at);
+  }
+  make_monotonous(noise.sigma_m);
+  return noise;
+}
+
+void flatten_range_noise(PreparedCloud& cloud, double radius_m, const RunContext& context) {
+  constexpr double kHarmless = 0.2;      // of the resolution: normals and descriptors bear it
+  constexpr float kRadiusPerNoise = 7.0F;  // wide enough to hold the whole slab of scattered points
+  constexpr double kMostWider = 3.0;     // times the radius
+  constexpr float kStillPlane = 2.0F;    // times the noise: beyond, the surface is no plane
+  constexpr float kNarrower = 0.7F;
+  const RangeNoise noise = measure_range_noise(cloud, radius_m, context);
+  const auto harmless = static_cast<float>(kHarmless * cloud.resolution_m);
+  if (noise.sigma_m.empty() || noise.sigma_m.back() <= harmless) return;
+
+  const CellGrid grid(cloud.points, radius_m / kCellsPerRadius);
+  PointCloud flat;
+  flat.points = cloud.points;
+  flat.normals = cloud.normals;
+  flat.origin = cloud.origin;
+  flat.viewpoints = cloud.viewpoints;
+  flat.viewpoint_index = cloud.viewpoint_index;
+  parallel_chunks(cloud.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<CellGrid::Found> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      if ((i - begin) % kBlock == 0) context.check("preprocess");
+      const float sigma_m = noise.at(range_of(cloud, i));
+      if (sigma_m <= harmless) continue;
+      const auto least = static_cast<float>(radius_m);
+      float radius = std::clamp(
+          kRadiusPerNoise * sigma_m, least, static_cast<float>(kMostWider * radius_m));
+      for (; radius >= least; radius *= kNarrower) {
+        const PlaneFit fit = fit_plane(grid, cloud.points[i], radius, found);
+        if (!(fit.sigma_m <= kStillPlane * sigma_m)) continue;
+        flat.points[i] -= fit.normal * fit.normal.dot(cloud.points[i] - fit.mean);
+        flat.normals[i] = fit.normal.dot(cloud.normals[i]) < 0.0F ? -fit.normal : fit.normal;
+        break;
+      }
+    }
+  });
+  PointCloud thinned = thin(flat, cloud.resolution_m);
+  cloud.points = std::move(thinned.points);
+  cloud.normals = std::move(thinned.normals);
+  cloud.viewpoint_index = std::move(thinned.viewpoint_index);
+}
+
+}  // namespace landmarkdb

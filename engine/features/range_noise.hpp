@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/base/run_context.hpp"
+#include "engine/types/point_cloud.hpp"
+
+namespace landmarkdb {
+
+// How far a sensor's points scatter about the surface, by their range, as the cloud itself shows
+// it. A depth camera's noise grows with the square of the range: millimetres at arm's length, a
+// decimetre across a hall (Nguyen, Izadi, Lovell 2012), more than a voxel.
+struct RangeNoise {
+  double first_range_m = 0.0;  // where the first bin begins; each is `kStep` times as far
+  std::vector<float> sigma_m;  // by bin; never falls with the range
+
+  static constexpr double kStep = 1.2;
+  float at(float range_m) const;
+};
+
+// Measures it on a cloud with normals: in each bin of range the plane fits of the flattest quarter
+// of the points leave the noise; the rest have structure of their own.
+RangeNoise measure_range_noise(const PreparedCloud& cloud,
+                               double radius_m,
+                               const RunContext& context);
+
+// Where the noise is a good part of the resolution, lays each point onto the plane of a
+// neighbourhood as much wider as the noise asks, unless that neighbourhood is no noisy plane, and
+// thins again: walls seen from afar become thin, with normals that hold. Points nearer than that
+// stay as they are. `radius_m` is that of the cloud's normals. The same for any number of threads.
+void flatten_range_noise(PreparedCloud& cloud, double radius_m, const RunContext& context);
+
+}  // namespace landmarkdb
