@@ -83,8 +83,8 @@ Funnel follow(const PointCloud& cloud,
   });
   for (const Assessed& pose : result.poses) {
     if (pose.entry != right_entry) continue;
-    funnel.nearest_m = std::min(
-        funnel.nearest_m, (pose.T_entry_sensor.translation() - truth.translation()).norm());
+    funnel.nearest_m = std::min(funnel.nearest_m,
+                                (pose.T_entry_sensor.translation() - truth.translation()).norm());
   }
   for (std::size_t i = 0; i < result.poses.size() && funnel.assessed < 0; ++i) {
     const Assessed& pose = result.poses[i];

@@ -18,11 +18,11 @@ namespace landmarkdb::bench {
 struct Funnel {
   std::size_t keypoints = 0;
   std::size_t proposals = 0;
-  std::size_t near_proposals = 0;  // of all proposals of the right entry
+  std::size_t near_proposals = 0;   // of all proposals of the right entry
   std::size_t loose_proposals = 0;  // within 0.8 m at the query's centre and 25 deg
-  int ranked = -1;                 // place of the first near one after testing; -1: lost
+  int ranked = -1;                  // place of the first near one after testing; -1: lost
   double nearest_m = 1e9;  // of the poses assessed in the right entry: how near the best one came
-  int assessed = -1;  // place by quality of the first right one after refinement; -1: lost
+  int assessed = -1;       // place by quality of the first right one after refinement; -1: lost
 };
 
 // Follows the right pose of a place through the search stage by stage.

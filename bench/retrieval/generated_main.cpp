@@ -30,7 +30,7 @@ struct Settings {
   int frames = 10;    // a place
   std::uint64_t seed = 1000;
   std::size_t points = 600'000;  // a place
-  int only = -1;  // ask the frames of this place alone
+  int only = -1;                 // ask the frames of this place alone
   bool gravity = false;
   bool funnel = false;  // say at which stage each frame was lost
   int threads = 2;
@@ -39,7 +39,7 @@ struct Settings {
 datasets::Place place_of(const Settings& settings, int i) {
   const auto types = datasets::all_place_types();
   datasets::PlaceOptions options;
-  options.type = types[static_cast<std::size_t>(i) % types.size()];
+  options.type = types[(static_cast<std::size_t>(i) + settings.seed / 100) % types.size()];
   options.seed = settings.seed + static_cast<std::uint64_t>(i);
   options.floors = 1;
   return datasets::make_place(options);
@@ -122,23 +122,28 @@ void ask(const datasets::DepthFrame& frame,
     }
     tally->milliseconds.push_back(answer.timings.total.count());
   }
-  std::printf("%s,%d,%.4f,%d,%d,%.4f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%.0f\n",
-              name.empty() ? "stranger" : name.c_str(),
-              number,
-              frame.normal_spread,
-              static_cast<int>(answer.status),
-              right ? 1 : 0,
-              std::min(metres, 99.0),
-              degrees,
-              answer.hypotheses.empty() ? 0.0 : answer.hypotheses[0].confidence,
-              fit.quality,
-              fit.overlap,
-              fit.explained,
-              fit.coverage,
-              fit.free_space_violation,
-              fit.margin,
-              fit.observability,
-              answer.timings.total.count());
+  std::printf(
+      "%s,%d,%.4f,%d,%d,%.4f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%u,%lu,%.4f,"
+      "%.0f\n",
+      name.empty() ? "stranger" : name.c_str(),
+      number,
+      frame.normal_spread,
+      static_cast<int>(answer.status),
+      right ? 1 : 0,
+      std::min(metres, 99.0),
+      degrees,
+      answer.hypotheses.empty() ? 0.0 : answer.hypotheses[0].confidence,
+      fit.quality,
+      fit.overlap,
+      fit.explained,
+      fit.coverage,
+      fit.free_space_violation,
+      fit.margin,
+      fit.observability,
+      answer.hypotheses.empty() ? 0U : answer.hypotheses[0].counts.inliers,
+      static_cast<unsigned long>(answer.query.keypoints),
+      fit.rmse_m,
+      answer.timings.total.count());
   std::fflush(stdout);
 }
 
@@ -179,7 +184,7 @@ int run(const Settings& settings) {
   std::puts(
       "place,frame,spread,status,right,metres,degrees,confidence,quality,overlap,explained,"
       "coverage,"
-      "crossed,margin,observability,ms");
+      "crossed,margin,observability,inliers,keypoints,rmse_m,ms");
   Tally all;
   Tally informative;
   for (std::size_t p = 0; p < places.size(); ++p) {
@@ -205,14 +210,16 @@ int run(const Settings& settings) {
       if (settings.gravity) options.up = frame.up_camera;
       const Funnel funnel =
           follow(frame.cloud, options, entries, levels, p, frame.T_scene_camera, context);
-      std::printf("#funnel keypoints %zu proposals %zu near %zu loose %zu ranked %d assessed %d nearest %.3f\n",
-                  funnel.keypoints,
-                  funnel.proposals,
-                  funnel.near_proposals,
-                  funnel.loose_proposals,
-                  funnel.ranked,
-                  funnel.assessed,
-                  funnel.nearest_m);
+      std::printf(
+          "#funnel keypoints %zu proposals %zu near %zu loose %zu ranked %d assessed %d nearest "
+          "%.3f\n",
+          funnel.keypoints,
+          funnel.proposals,
+          funnel.near_proposals,
+          funnel.loose_proposals,
+          funnel.ranked,
+          funnel.assessed,
+          funnel.nearest_m);
     }
   }
   print("all", all);

@@ -119,10 +119,10 @@ RangeNoise measure_range_noise(const PreparedCloud& cloud,
 }
 
 void flatten_range_noise(PreparedCloud& cloud, double radius_m, const RunContext& context) {
-  constexpr double kHarmless = 0.2;      // of the resolution: normals and descriptors bear it
+  constexpr double kHarmless = 0.2;        // of the resolution: normals and descriptors bear it
   constexpr float kRadiusPerNoise = 7.0F;  // wide enough to hold the whole slab of scattered points
-  constexpr double kMostWider = 3.0;     // times the radius
-  constexpr float kStillPlane = 2.0F;    // times the noise: beyond, the surface is no plane
+  constexpr double kMostWider = 3.0;       // times the radius
+  constexpr float kStillPlane = 2.0F;      // times the noise: beyond, the surface is no plane
   constexpr float kNarrower = 0.7F;
   const RangeNoise noise = measure_range_noise(cloud, radius_m, context);
   const auto harmless = static_cast<float>(kHarmless * cloud.resolution_m);
@@ -142,8 +142,8 @@ void flatten_range_noise(PreparedCloud& cloud, double radius_m, const RunContext
       const float sigma_m = noise.at(range_of(cloud, i));
       if (sigma_m <= harmless) continue;
       const auto least = static_cast<float>(radius_m);
-      float radius = std::clamp(
-          kRadiusPerNoise * sigma_m, least, static_cast<float>(kMostWider * radius_m));
+      float radius =
+          std::clamp(kRadiusPerNoise * sigma_m, least, static_cast<float>(kMostWider * radius_m));
       for (; radius >= least; radius *= kNarrower) {
         const PlaneFit fit = fit_plane(grid, cloud.points[i], radius, found);
         if (!(fit.sigma_m <= kStillPlane * sigma_m)) continue;

@@ -18,8 +18,8 @@ namespace landmarkdb {
 struct Entry {
   CatalogEntry stored;
   SurfaceGrid grid;
-  SurfaceGrid wide;  // of places: the same surface in larger cells
-  std::vector<Eigen::Vector3f> wide_points;  // of its surfels
+  SurfaceGrid wide;                           // of places: the same surface in larger cells
+  std::vector<Eigen::Vector3f> wide_points;   // of its surfels
   TestPoints test;                            // of the entry's own surface, for objects
   std::vector<Eigen::Vector3f> sight_points;  // spread over the whole surface, for free space
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean of the points

@@ -78,6 +78,30 @@ TEST(SurfaceGrid, WorksFarFromZero) {
   expect_like_brute_force({-4000.0F, 9000.0F, 0.0F}, 0.5F, 2);
 }
 
+// Two clouds so far apart that no table of the box between them would be reasonable.
+TEST(SurfaceGrid, HoldsWhatIsKilometresApart) {
+  Random random(3);
+  const float cell_m = 0.05F;
+  Cloud cloud = random_cloud(500, {0, 0, 0}, 1.0F, random);
+  const Cloud other = random_cloud(500, {3000, -2000, 500}, 1.0F, random);
+  cloud.points.insert(cloud.points.end(), other.points.begin(), other.points.end());
+  cloud.normals.insert(cloud.normals.end(), other.normals.begin(), other.normals.end());
+  const SurfaceGrid far(cloud.points, cloud.normals, cell_m, 2);
+  EXPECT_LT(far.memory_bytes(), std::size_t{64} << 20U);
+  const SurfaceGrid alone(other.points, other.normals, cell_m, 2);
+  int found = 0;
+  for (const Eigen::Vector3f& p : random_cloud(2000, {3000, -2000, 500}, 1.2F, random).points) {
+    const Surfel* expected = alone.near(p);
+    const Surfel* surfel = far.near(p);
+    ASSERT_EQ(surfel == nullptr, expected == nullptr);
+    if (surfel == nullptr) continue;
+    ++found;
+    EXPECT_EQ(surfel->point, expected->point);
+  }
+  EXPECT_GT(found, 100);
+  EXPECT_EQ(far.near({1500, -1000, 250}), nullptr);
+}
+
 TEST(SurfaceGrid, GivesBackPointAndNormalOfOneAndTheSameSurfel) {
   Random random(2);
   const Cloud cloud = random_cloud(500, Eigen::Vector3f::Zero(), 3.0F, random);

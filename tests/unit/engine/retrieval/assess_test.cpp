@@ -37,10 +37,10 @@ struct Seen {
     cloud.points = here.points;
     return clean_query(std::move(cloud));
   }();
-  Meeting meeting{entry.grid, here.points, here.normals, false};
+  Meeting meeting{entry.grid, here.points, here.normals, false, 0.0};
 
   Assessed assess(const Eigen::Isometry3d& start) const {
-    Assessed assessed = assess_coarse(meeting, start);
+    Assessed assessed = assess_coarse(meeting, entry, query, start);
     assess_fine(meeting, entry, query, assessed);
     return assessed;
   }
@@ -50,7 +50,7 @@ TEST(Assess, RefinesTheRightPoseAndFindsItGood) {
   const Seen seen;
   Eigen::Isometry3d start = seen.T_entry_sensor;
   start.translation() += Eigen::Vector3d(0.04, -0.03, 0.03);
-  const Assessed coarse = assess_coarse(seen.meeting, start);
+  const Assessed coarse = assess_coarse(seen.meeting, seen.entry, seen.query, start);
   EXPECT_THAT(coarse.T_entry_sensor, PoseNear(seen.T_entry_sensor, 0.02, 0.02));
   EXPECT_EQ(coarse.T_entry_proposed.matrix(), start.matrix());
   EXPECT_GT(coarse.score, 0.8);
@@ -79,10 +79,10 @@ TEST(Assess, FindsAWrongPosePoor) {
 TEST(Assess, GivesTheSameWhicheverOfTheTwoIsCarriedOntoTheOther) {
   const Seen seen;
   const SurfaceGrid query_grid(seen.here.points, seen.here.normals, 0.05, 2);
-  const Meeting turned{query_grid, seen.corner.points, seen.corner.normals, true};
+  const Meeting turned{query_grid, seen.corner.points, seen.corner.normals, true, 0.0};
   Eigen::Isometry3d start = seen.T_entry_sensor;
   start.translation().x() += 0.04;
-  Assessed assessed = assess_coarse(turned, start);
+  Assessed assessed = assess_coarse(turned, seen.entry, seen.query, start);
   assess_fine(turned, seen.entry, seen.query, assessed);
   EXPECT_THAT(assessed.T_entry_sensor, PoseNear(seen.T_entry_sensor, 0.005, 0.004));
   EXPECT_GT(assessed.score, 0.7);

@@ -136,6 +136,38 @@ TEST(RankPoses, StopsWhenTold) {
   EXPECT_THROW(rank_poses(task.grid, task.test, task.proposals, task.centre, {}, context), Error);
 }
 
+// Proposals as poor as a half hidden keypoint makes them: the fine grid cannot tell the best of
+// them from chance.
+TEST(SettleBest, BringsPoorProposalsOfTheRightPoseHome) {
+  Task task = haystack(3000, 3000);
+  Random random(5);
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    Eigen::Isometry3d T = testing::random_pose(random, 0.15, 0.15);
+    task.proposals.push_back(proposal_of(T, 3000 + i));
+  }
+  const SurfaceGrid wide(task.corner.points, task.corner.normals, 3.0 * kCell_m, 2);
+  RunContext context;
+  for (const int threads : {1, 3}) {
+    context.threads = threads;
+    const std::vector<Proposal> settled =
+        settle_best(wide, task.grid, task.test, task.proposals, task.centre, {}, context);
+    const std::vector<RankedPose> ranked =
+        rank_poses(task.grid, task.test, settled, task.centre, {}, context);
+    ASSERT_FALSE(ranked.empty());
+    EXPECT_THAT(ranked[0].T_target_source, PoseNear(Eigen::Isometry3d::Identity(), 0.05, 0.05));
+    EXPECT_GE(ranked[0].correspondence, 3000U);
+  }
+}
+
+TEST(SettleBest, KeepsNoMoreThanAsked) {
+  const Task task = haystack(2000, 7);
+  const SurfaceGrid wide(task.corner.points, task.corner.normals, 3.0 * kCell_m, 2);
+  const auto settled =
+      settle_best(wide, task.grid, task.test, task.proposals, task.centre, {.kept = 20}, {});
+  EXPECT_LE(settled.size(), 20U);
+  EXPECT_TRUE(settle_best(wide, task.grid, task.test, {}, task.centre, {}, {}).empty());
+}
+
 TEST(SamePose, AsksForBothPlaceAndTurn) {
   const Eigen::Isometry3d a = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d b = a;

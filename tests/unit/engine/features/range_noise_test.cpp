@@ -1,0 +1,114 @@
+#include "engine/features/range_noise.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/random.hpp"
+#include "engine/cloud/prepare_cloud.hpp"
+#include "engine/cloud/sanitise.hpp"
+
+namespace landmarkdb {
+namespace {
+
+constexpr double kVoxel_m = 0.05;
+constexpr double kRadius_m = 0.125;
+
+// Two walls that face a depth camera at the origin, one at 2 m, one at 6 m, with noise along the
+// ray that grows with the square of the range.
+constexpr double kNear_m = 2.0;
+constexpr double kFar_m = 6.0;
+
+PointCloud two_walls(double noise_at_one_metre, std::uint64_t seed = 1) {
+  Random random(seed);
+  PointCloud cloud;
+  cloud.viewpoints.emplace_back(0.0F, 0.0F, 0.0F);
+  for (int i = 0; i < 60'000; ++i) {
+    const bool far = i % 2 == 0;
+    const double z = far ? kFar_m : kNear_m;
+    const double slope = far ? random.uniform(0.02, 0.3) : random.uniform(-0.6, -0.02);
+    const Eigen::Vector3d p(slope * z, random.uniform(-0.3, 0.3) * z, z);
+    const double range = p.norm();
+    const double off = noise_at_one_metre * range * range * random.normal();
+    cloud.points.push_back((p * (1.0 + off / range)).cast<float>());
+  }
+  return cloud;
+}
+
+PreparedCloud prepared(PointCloud cloud) {
+  const CloudCounts counts = sanitise(cloud);
+  return prepare_cloud(cloud, counts, {kVoxel_m, kRadius_m}, {});
+}
+
+// Mean distance of the far wall's points from it, and the share of its normals within 15 deg.
+struct Quality {
+  double distance_m = 0.0;
+  double good_normals = 0.0;
+};
+
+Quality far_quality(const PreparedCloud& cloud) {
+  Quality quality;
+  double points = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d p = cloud.points[i].cast<double>();
+    if (p.z() < 4.0 || p.x() < 0.5 || p.x() > 1.5 || std::abs(p.y()) > 1.4) continue;  // no edges
+    points += 1.0;
+    quality.distance_m += std::abs(p.z() - kFar_m);
+    quality.good_normals += cloud.normals[i].z() < -0.966F ? 1.0 : 0.0;
+  }
+  quality.distance_m /= points;
+  quality.good_normals /= points;
+  return quality;
+}
+
+TEST(MeasureRangeNoise, GrowsWithTheRangeAndIsNearTheTruth) {
+  const RangeNoise noise = measure_range_noise(prepared(two_walls(0.001)), kRadius_m, {});
+  ASSERT_FALSE(noise.sigma_m.empty());
+  EXPECT_NEAR(noise.at(2.1F), 0.004F, 0.003F);
+  EXPECT_NEAR(noise.at(6.2F), 0.036F, 0.015F);
+  for (float range = 1.0F; range < 8.0F; range += 0.5F) {
+    EXPECT_LE(noise.at(range), noise.at(range + 0.5F));
+  }
+}
+
+TEST(MeasureRangeNoise, IsNothingWithoutAViewpoint) {
+  PreparedCloud cloud = prepared(two_walls(0.001));
+  cloud.viewpoints.clear();
+  cloud.viewpoint_index.clear();
+  EXPECT_EQ(measure_range_noise(cloud, kRadius_m, {}).at(5.0F), 0.0F);
+}
+
+TEST(FlattenRangeNoise, MakesFarWallsThinAndTheirNormalsRight) {
+  PreparedCloud cloud = prepared(two_walls(0.002));
+  const Quality before = far_quality(cloud);
+  const std::size_t points_before = cloud.size();
+  flatten_range_noise(cloud, kRadius_m, {});
+  const Quality after = far_quality(cloud);
+  EXPECT_LT(after.distance_m, 0.6 * before.distance_m);
+  EXPECT_GT(after.good_normals, before.good_normals + 0.2);
+  EXPECT_LT(cloud.size(), points_before);
+  EXPECT_EQ(cloud.normals.size(), cloud.size());
+}
+
+TEST(FlattenRangeNoise, LeavesACleanCloudAsItIs) {
+  PreparedCloud cloud = prepared(two_walls(0.0));
+  const std::vector<Eigen::Vector3f> before = cloud.points;
+  flatten_range_noise(cloud, kRadius_m, {});
+  EXPECT_EQ(cloud.points, before);
+}
+
+TEST(FlattenRangeNoise, GivesTheSameOnAnyNumberOfThreads) {
+  const PreparedCloud cloud = prepared(two_walls(0.002));
+  RunContext context;
+  PreparedCloud one = cloud;
+  context.threads = 1;
+  flatten_range_noise(one, kRadius_m, context);
+  PreparedCloud three = cloud;
+  context.threads = 3;
+  flatten_range_noise(three, kRadius_m, context);
+  EXPECT_EQ(one.points, three.points);
+  EXPECT_EQ(one.normals, three.normals);
+}
+
+}  // namespace
+}  // namespace landmarkdb
