@@ -78,9 +78,21 @@ Funnel follow(const PointCloud& cloud,
         funnel.ranked = static_cast<int>(i);
     }
   }
+  const QueryView& view = views.at(query_features(entry.record().options, options));
+  if (view.prepared.size() > 0) {
+    const Meeting meeting{.target = entry.grid,
+                          .source = view.sample_points,
+                          .source_normals = view.sample_normals,
+                          .tolerance_m = common_tolerance_m(input, entry)};
+    Assessed from_truth = assess_coarse(meeting, entry, query, truth);
+    assess_fine(meeting, entry, query, from_truth);
+    funnel.truth_score = from_truth.score;
+    funnel.truth_drift_m = (from_truth.T_entry_sensor.translation() - truth.translation()).norm();
+  }
   std::sort(result.poses.begin(), result.poses.end(), [](const Assessed& a, const Assessed& b) {
     return a.score > b.score;
   });
+  if (!result.poses.empty()) funnel.best_score = result.poses.front().score;
   for (const Assessed& pose : result.poses) {
     if (pose.entry != right_entry) continue;
     funnel.nearest_m = std::min(funnel.nearest_m,

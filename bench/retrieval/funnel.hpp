@@ -22,7 +22,11 @@ struct Funnel {
   std::size_t loose_proposals = 0;  // within 0.8 m at the query's centre and 25 deg
   int ranked = -1;                  // place of the first near one after testing; -1: lost
   double nearest_m = 1e9;  // of the poses assessed in the right entry: how near the best one came
-  int assessed = -1;       // place by quality of the first right one after refinement; -1: lost
+  // Score of the pose that refinement makes of the truth itself, and how far it carries it.
+  double truth_score = 0.0;
+  double truth_drift_m = 0.0;
+  double best_score = 0.0;  // of the poses assessed
+  int assessed = -1;        // place by quality of the first right one after refinement; -1: lost
 };
 
 // Follows the right pose of a place through the search stage by stage.

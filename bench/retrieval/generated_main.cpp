@@ -212,14 +212,17 @@ int run(const Settings& settings) {
           follow(frame.cloud, options, entries, levels, p, frame.T_scene_camera, context);
       std::printf(
           "#funnel keypoints %zu proposals %zu near %zu loose %zu ranked %d assessed %d nearest "
-          "%.3f\n",
+          "%.3f truth %.4f drift %.3f best %.4f\n",
           funnel.keypoints,
           funnel.proposals,
           funnel.near_proposals,
           funnel.loose_proposals,
           funnel.ranked,
           funnel.assessed,
-          funnel.nearest_m);
+          funnel.nearest_m,
+          funnel.truth_score,
+          funnel.truth_drift_m,
+          funnel.best_score);
     }
   }
   print("all", all);

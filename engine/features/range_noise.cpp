@@ -18,6 +18,7 @@ namespace {
 constexpr double kCellsPerRadius = 2.0;  // as in describe_shot
 constexpr std::size_t kBlock = 256;      // points between two looks at the stop request
 constexpr std::size_t kFewestOfBin = 50;
+constexpr double kMostWider = 3.0;  // times the normals' radius: the widest neighbourhood looked at
 constexpr double kFlattest = 0.25;  // share of a bin's points that are taken for planar
 
 struct PlaneFit {
@@ -64,15 +65,42 @@ std::size_t bin_of(double first_range_m, float range_m) {
                                   std::log(RangeNoise::kStep));
 }
 
-// Bins of too few points take the next nearer one's; and noise does not fall with the range, so
-// what a cluttered bin shows beyond any further one is its clutter.
-void make_monotonous(std::vector<float>& sigma_m) {
-  for (std::size_t i = 1; i < sigma_m.size(); ++i) {
-    if (sigma_m[i] < 0.0F) sigma_m[i] = sigma_m[i - 1];
+struct Bin {
+  double sigma_m = 0.0;
+  double weight = 0.0;  // points
+  std::size_t bins = 1;
+};
+
+// Noise does not fall with the range: the nearest sequence that never falls (pool adjacent
+// violators: Barlow et al. 1972), each bin weighted by its points.
+std::vector<float> never_falling(const std::vector<Bin>& measured) {
+  std::vector<Bin> pools;
+  for (Bin next : measured) {
+    while (!pools.empty() && pools.back().sigma_m >= next.sigma_m) {
+      const Bin& last = pools.back();
+      const double weight = last.weight + next.weight;
+      if (weight > 0.0) {
+        next.sigma_m = (last.sigma_m * last.weight + next.sigma_m * next.weight) / weight;
+      }
+      next.weight = weight;
+      next.bins += last.bins;
+      pools.pop_back();
+    }
+    pools.push_back(next);
   }
-  for (std::size_t i = sigma_m.size(); i-- > 1;) {
-    sigma_m[i - 1] = sigma_m[i - 1] < 0.0F ? 0.0F : std::min(sigma_m[i - 1], sigma_m[i]);
+  std::vector<float> sigma_m;
+  for (const Bin& pool : pools) {
+    sigma_m.insert(sigma_m.end(), pool.bins, static_cast<float>(pool.sigma_m));
   }
+  return sigma_m;
+}
+
+// Wide enough to hold several of the sheets that a depth camera's quantised disparity leaves of a
+// far wall.
+float noise_radius_m(double radius_m, float range_m) {
+  constexpr float kOfRange = 0.05F;
+  const auto least = static_cast<float>(radius_m);
+  return std::clamp(kOfRange * range_m, least, static_cast<float>(kMostWider) * least);
 }
 
 }  // namespace
@@ -94,7 +122,8 @@ RangeNoise measure_range_noise(const PreparedCloud& cloud,
     std::vector<CellGrid::Found> found;
     for (std::size_t i = begin; i < end; ++i) {
       if ((i - begin) % kBlock == 0) context.check("preprocess");
-      sigma[i] = fit_plane(grid, cloud.points[i], static_cast<float>(radius_m), found).sigma_m;
+      const float radius = noise_radius_m(radius_m, range_of(cloud, i));
+      sigma[i] = fit_plane(grid, cloud.points[i], radius, found).sigma_m;
     }
   });
   std::vector<std::vector<float>> bins;
@@ -104,27 +133,42 @@ RangeNoise measure_range_noise(const PreparedCloud& cloud,
     if (bin >= bins.size()) bins.resize(bin + 1);
     bins[bin].push_back(sigma[i]);
   }
+  std::vector<Bin> measured;
   for (std::vector<float>& bin : bins) {
-    if (bin.size() < kFewestOfBin) {
-      noise.sigma_m.push_back(-1.0F);
-      continue;
-    }
+    // Of too few points: as the bin before it.
+    const double before = measured.empty() ? 0.0 : measured.back().sigma_m;
+    measured.push_back({before, static_cast<double>(bin.size())});
+    if (bin.size() < kFewestOfBin) continue;
     const auto at =
         bin.begin() + static_cast<std::ptrdiff_t>(kFlattest * static_cast<double>(bin.size()));
     std::nth_element(bin.begin(), at, bin.end());
-    noise.sigma_m.push_back(*at);
+    measured.back().sigma_m = static_cast<double>(*at);
   }
-  make_monotonous(noise.sigma_m);
+  noise.sigma_m = never_falling(measured);
   return noise;
 }
 
-void flatten_range_noise(PreparedCloud& cloud, double radius_m, const RunContext& context) {
+std::vector<float> range_weights(const PreparedCloud& cloud, const RangeNoise& noise) {
+  std::vector<float> weights(cloud.size(), 1.0F);
+  if (noise.sigma_m.empty()) return weights;
+  constexpr double kHalf = 0.3;  // of the resolution: noise at which a point counts for half
+  const auto half = static_cast<float>(kHalf * cloud.resolution_m);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float ratio = noise.at(range_of(cloud, i)) / half;
+    weights[i] = 1.0F / (1.0F + ratio * ratio);
+  }
+  return weights;
+}
+
+void flatten_range_noise(PreparedCloud& cloud,
+                         const RangeNoise& noise,
+                         double radius_m,
+                         const RunContext& context) {
   constexpr double kHarmless = 0.2;        // of the resolution: normals and descriptors bear it
   constexpr float kRadiusPerNoise = 7.0F;  // wide enough to hold the whole slab of scattered points
   constexpr double kMostWider = 3.0;       // times the radius
   constexpr float kStillPlane = 2.0F;      // times the noise: beyond, the surface is no plane
   constexpr float kNarrower = 0.7F;
-  const RangeNoise noise = measure_range_noise(cloud, radius_m, context);
   const auto harmless = static_cast<float>(kHarmless * cloud.resolution_m);
   if (noise.sigma_m.empty() || noise.sigma_m.back() <= harmless) return;
 

@@ -28,6 +28,13 @@ RangeNoise measure_range_noise(const PreparedCloud& cloud,
 // neighbourhood as much wider as the noise asks, unless that neighbourhood is no noisy plane, and
 // thins again: walls seen from afar become thin, with normals that hold. Points nearer than that
 // stay as they are. `radius_m` is that of the cloud's normals. The same for any number of threads.
-void flatten_range_noise(PreparedCloud& cloud, double radius_m, const RunContext& context);
+void flatten_range_noise(PreparedCloud& cloud,
+                         const RangeNoise& noise,
+                         double radius_m,
+                         const RunContext& context);
+
+// How much each point can be relied on, 0..1: 1 where the noise at its range is nothing against the
+// cloud's resolution, and little where it is as large.
+std::vector<float> range_weights(const PreparedCloud& cloud, const RangeNoise& noise);
 
 }  // namespace landmarkdb

@@ -27,6 +27,7 @@ std::size_t direction_bin(const Eigen::Vector3f& n) {
 
 TestPoints select_test_points(std::span<const Eigen::Vector3f> points,
                               std::span<const Eigen::Vector3f> normals,
+                              std::span<const float> weights,
                               std::size_t count,
                               std::uint64_t seed) {
   std::array<std::size_t, kBins> population{};
@@ -36,8 +37,8 @@ TestPoints select_test_points(std::span<const Eigen::Vector3f> points,
   Random random(seed);
   std::vector<std::pair<double, std::uint32_t>> keys(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double weight =
-        1.0 / std::sqrt(static_cast<double>(population[direction_bin(normals[i])]));
+    const double weight = (weights.empty() ? 1.0 : static_cast<double>(weights[i])) /
+                          std::sqrt(static_cast<double>(population[direction_bin(normals[i])]));
     keys[i] = {-std::log(1.0 - random.uniform()) / weight, static_cast<std::uint32_t>(i)};
   }
   const std::size_t taken = std::min(count, keys.size());

@@ -19,9 +19,11 @@ struct TestPoints {
 
 // Draws up to `count` points so that rare surface directions are not drowned by floors and walls: a
 // point's chance falls with the square root of how common its normal's direction is (after the
-// normal-space sampling of Rusinkiewicz and Levoy 2001). Same seed, same cloud: same points.
+// normal-space sampling of Rusinkiewicz and Levoy 2001), and rises with its `weights`, one a point
+// or none at all. Same seed, same cloud: same points.
 TestPoints select_test_points(std::span<const Eigen::Vector3f> points,
                               std::span<const Eigen::Vector3f> normals,
+                              std::span<const float> weights,
                               std::size_t count,
                               std::uint64_t seed);
 

@@ -67,7 +67,7 @@ Entry make_entry(CatalogEntry stored, const RunContext& context) {
               .grid = grid_of_scene(record, context),
               .wide = is_object ? SurfaceGrid({}, {}, 1.0, 0) : make_wide_grid(cloud),
               .wide_points = {},
-              .test = select_test_points(cloud.points, cloud.normals, kTestPoints, kSeed),
+              .test = select_test_points(cloud.points, cloud.normals, {}, kTestPoints, kSeed),
               .sight_points = {},
               .centre = Eigen::Vector3d::Zero(),
               .extent_m = 0.0};

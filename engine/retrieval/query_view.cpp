@@ -1,6 +1,8 @@
 #include "engine/retrieval/query_view.hpp"
 
+#include <algorithm>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "engine/cloud/prepare_cloud.hpp"
@@ -32,6 +34,21 @@ Keypoints spread_keypoints(const Keypoints& keypoints) {
     kept.index.push_back(keypoints.index[i]);
   }
   return kept;
+}
+
+// About `count` indices at even steps of the weights' sum.
+std::vector<std::uint32_t> spread_by(std::span<const float> weights, std::size_t count) {
+  double sum = 0.0;
+  for (const float weight : weights) sum += static_cast<double>(weight);
+  const double step = std::max(sum / static_cast<double>(count), 1.0);
+  std::vector<std::uint32_t> indices;
+  double passed = 0.0;
+  for (std::uint32_t i = 0; i < weights.size(); ++i) {
+    passed += static_cast<double>(weights[i]);
+    if (passed < step * (static_cast<double>(indices.size()) + 1.0)) continue;
+    indices.push_back(i);
+  }
+  return indices;
 }
 
 // A query shows little, and each keypoint of it is another chance: where the usual spacing gives
@@ -76,9 +93,12 @@ QueryView view_query(const CleanQuery& query,
     const StageTimer timer(timings.preprocess);
     view.prepared = prepare_cloud(
         query.cloud, query.counts, {options.voxel_m, options.normal_radius_m}, context);
-    flatten_range_noise(view.prepared, options.normal_radius_m, context);
-    view.test = select_test_points(view.prepared.points, view.prepared.normals, kTestPoints, seed);
-    for (const std::uint32_t i : spread(view.prepared.size(), kSamplePoints)) {
+    const RangeNoise noise = measure_range_noise(view.prepared, options.normal_radius_m, context);
+    flatten_range_noise(view.prepared, noise, options.normal_radius_m, context);
+    const std::vector<float> weights = range_weights(view.prepared, noise);
+    view.test =
+        select_test_points(view.prepared.points, view.prepared.normals, weights, kTestPoints, seed);
+    for (const std::uint32_t i : spread_by(weights, kSamplePoints)) {
       view.sample_points.push_back(view.prepared.points[i]);
       view.sample_normals.push_back(view.prepared.normals[i]);
     }

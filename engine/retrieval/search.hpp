@@ -94,6 +94,10 @@ struct SearchResult {
 void search_places(const SearchInput& input, SearchResult& result);
 void search_objects(const SearchInput& input, SearchResult& result);
 
+// Plane distance at which a point lies on the entry's surface: that of the finest entry asked, so
+// that entries of different resolution compete fairly, but not less than the entry can tell.
+double common_tolerance_m(const SearchInput& input, const Entry& entry);
+
 // The paper's way, place by place: nearest neighbours, ratio and slope filter, similarity by random
 // samples.
 void search_paper(const SearchInput& input, SearchResult& result);

@@ -105,8 +105,8 @@ void propose_and_rank(const SearchInput& input,
   result.matches[m].poses.survivors = survivors.size();
 }
 
-// The tolerance at which the entry's surface counts as met: that of the finest entry asked, but not
-// less than what the entry's own resolution can tell.
+}  // namespace
+
 double common_tolerance_m(const SearchInput& input, const Entry& entry) {
   constexpr double kCells = 0.75;
   constexpr double kLeastCells = 0.4;
@@ -118,8 +118,6 @@ double common_tolerance_m(const SearchInput& input, const Entry& entry) {
   }
   return std::max(kCells * finest_m, kLeastCells * entry.grid.cell_m());
 }
-
-}  // namespace
 
 void search_places(const SearchInput& input, SearchResult& result) {
   std::vector<Candidate> candidates;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "engine/base/random.hpp"
@@ -82,7 +83,7 @@ TEST(FlattenRangeNoise, MakesFarWallsThinAndTheirNormalsRight) {
   PreparedCloud cloud = prepared(two_walls(0.002));
   const Quality before = far_quality(cloud);
   const std::size_t points_before = cloud.size();
-  flatten_range_noise(cloud, kRadius_m, {});
+  flatten_range_noise(cloud, measure_range_noise(cloud, kRadius_m, {}), kRadius_m, {});
   const Quality after = far_quality(cloud);
   EXPECT_LT(after.distance_m, 0.6 * before.distance_m);
   EXPECT_GT(after.good_normals, before.good_normals + 0.2);
@@ -90,10 +91,25 @@ TEST(FlattenRangeNoise, MakesFarWallsThinAndTheirNormalsRight) {
   EXPECT_EQ(cloud.normals.size(), cloud.size());
 }
 
+TEST(RangeWeights, TrustsNearPointsMoreThanFarOnes) {
+  const PreparedCloud cloud = prepared(two_walls(0.002));
+  const std::vector<float> weights =
+      range_weights(cloud, measure_range_noise(cloud, kRadius_m, {}));
+  ASSERT_EQ(weights.size(), cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.points[i].z() > 4.0F) {
+      EXPECT_LT(weights[i], 0.2F);
+    } else {
+      EXPECT_GT(weights[i], 0.6F);
+    }
+  }
+  EXPECT_THAT(range_weights(cloud, RangeNoise{}), ::testing::Each(1.0F));
+}
+
 TEST(FlattenRangeNoise, LeavesACleanCloudAsItIs) {
   PreparedCloud cloud = prepared(two_walls(0.0));
   const std::vector<Eigen::Vector3f> before = cloud.points;
-  flatten_range_noise(cloud, kRadius_m, {});
+  flatten_range_noise(cloud, measure_range_noise(cloud, kRadius_m, {}), kRadius_m, {});
   EXPECT_EQ(cloud.points, before);
 }
 
@@ -102,10 +118,10 @@ TEST(FlattenRangeNoise, GivesTheSameOnAnyNumberOfThreads) {
   RunContext context;
   PreparedCloud one = cloud;
   context.threads = 1;
-  flatten_range_noise(one, kRadius_m, context);
+  flatten_range_noise(one, measure_range_noise(one, kRadius_m, context), kRadius_m, context);
   PreparedCloud three = cloud;
   context.threads = 3;
-  flatten_range_noise(three, kRadius_m, context);
+  flatten_range_noise(three, measure_range_noise(three, kRadius_m, context), kRadius_m, context);
   EXPECT_EQ(one.points, three.points);
   EXPECT_EQ(one.normals, three.normals);
 }

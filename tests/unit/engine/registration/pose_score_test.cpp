@@ -27,7 +27,7 @@ Eigen::Isometry3d shifted(double x, double y, double z) {
 struct Corner {
   Surface surface = testing::corner_room(0.04);
   SurfaceGrid grid{surface.points, surface.normals, 0.05, 2};
-  TestPoints test = select_test_points(surface.points, surface.normals, 512, 1);
+  TestPoints test = select_test_points(surface.points, surface.normals, {}, 512, 1);
 };
 
 TEST(ScorePose, IsNearOneWhenRightAndFallsWithDistance) {
@@ -86,14 +86,14 @@ TEST(ScorePose, TakesNoMorePointsThanThereAreAndNoneForNoPose) {
 
 TEST(SelectTestPoints, RepeatsForASeedAndEachPointIsTakenOnce) {
   const Surface room = testing::corner_room(0.05);
-  const TestPoints a = select_test_points(room.points, room.normals, 300, 7);
-  const TestPoints b = select_test_points(room.points, room.normals, 300, 7);
-  const TestPoints c = select_test_points(room.points, room.normals, 300, 8);
+  const TestPoints a = select_test_points(room.points, room.normals, {}, 300, 7);
+  const TestPoints b = select_test_points(room.points, room.normals, {}, 300, 7);
+  const TestPoints c = select_test_points(room.points, room.normals, {}, 300, 8);
   ASSERT_EQ(a.size(), 300U);
   EXPECT_EQ(a.points, b.points);
   EXPECT_EQ(a.normals, b.normals);
   EXPECT_NE(a.points, c.points);
-  const TestPoints all = select_test_points(room.points, room.normals, 1'000'000, 1);
+  const TestPoints all = select_test_points(room.points, room.normals, {}, 1'000'000, 1);
   ASSERT_EQ(all.size(), room.points.size());
   const auto by_place = [](const Eigen::Vector3f& p, const Eigen::Vector3f& q) {
     return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
@@ -103,13 +103,13 @@ TEST(SelectTestPoints, RepeatsForASeedAndEachPointIsTakenOnce) {
   std::sort(drawn.begin(), drawn.end(), by_place);
   std::sort(given.begin(), given.end(), by_place);
   EXPECT_EQ(drawn, given);
-  EXPECT_EQ(select_test_points({}, {}, 10, 1).size(), 0U);
+  EXPECT_EQ(select_test_points({}, {}, {}, 10, 1).size(), 0U);
 }
 
 TEST(SelectTestPoints, IsAPrefixOfALongerDraw) {
   const Surface room = testing::corner_room(0.05);
-  const TestPoints few = select_test_points(room.points, room.normals, 50, 7);
-  const TestPoints many = select_test_points(room.points, room.normals, 500, 7);
+  const TestPoints few = select_test_points(room.points, room.normals, {}, 50, 7);
+  const TestPoints many = select_test_points(room.points, room.normals, {}, 500, 7);
   EXPECT_TRUE(std::equal(few.points.begin(), few.points.end(), many.points.begin()));
 }
 
@@ -120,7 +120,7 @@ TEST(SelectTestPoints, FavoursRareDirections) {
     points.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
     normals.push_back(i < 10'000 ? Eigen::Vector3f::UnitZ() : Eigen::Vector3f::UnitX());
   }
-  const TestPoints test = select_test_points(points, normals, 400, 1);
+  const TestPoints test = select_test_points(points, normals, {}, 400, 1);
   const auto rare = std::count_if(test.normals.begin(),
                                   test.normals.end(),
                                   [](const Eigen::Vector3f& n) { return n.x() > 0.5F; });

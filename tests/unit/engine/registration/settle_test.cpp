@@ -29,7 +29,7 @@ Eigen::Isometry3d settled(const SurfaceGrid& grid,
 TEST(SettlePose, BringsAPoseThatIsDecimetresOffHome) {
   const Surface corner = testing::corner_room(0.04);
   const SurfaceGrid grid(corner.points, corner.normals, kCell_m, 2);
-  const TestPoints test = select_test_points(corner.points, corner.normals, 512, 1);
+  const TestPoints test = select_test_points(corner.points, corner.normals, {}, 512, 1);
   Random random(1);
   for (int round = 0; round < 20; ++round) {
     const Eigen::Isometry3d start = testing::random_pose(random, 0.1, 0.12);
@@ -41,7 +41,7 @@ TEST(SettlePose, BringsAPoseThatIsDecimetresOffHome) {
 TEST(SettlePose, DoesNotSlideAlongAWall) {
   const Surface wall = testing::lone_wall(0.04);
   const SurfaceGrid grid(wall.points, wall.normals, kCell_m, 2);
-  const TestPoints test = select_test_points(wall.points, wall.normals, 512, 1);
+  const TestPoints test = select_test_points(wall.points, wall.normals, {}, 512, 1);
   Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
   start.translation() = Eigen::Vector3d(0.3, -0.2, 0.1);
   const Eigen::Isometry3d T = settled(grid, test, start, {.iterations = 6});
@@ -53,7 +53,7 @@ TEST(SettlePose, DoesNotSlideAlongAWall) {
 TEST(SettlePose, LeavesAPoseThatMeetsNothing) {
   const Surface corner = testing::corner_room(0.1);
   const SurfaceGrid grid(corner.points, corner.normals, kCell_m, 2);
-  const TestPoints test = select_test_points(corner.points, corner.normals, 512, 1);
+  const TestPoints test = select_test_points(corner.points, corner.normals, {}, 512, 1);
   Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
   start.translation().x() = 100.0;
   EXPECT_EQ(settled(grid, test, start, {}).matrix(), start.matrix());
@@ -63,7 +63,7 @@ TEST(SettlePose, LeavesAPoseThatMeetsNothing) {
 TEST(SettlePose, KeepsARotation) {
   const Surface corner = testing::corner_room(0.05);
   const SurfaceGrid grid(corner.points, corner.normals, kCell_m, 2);
-  const TestPoints test = select_test_points(corner.points, corner.normals, 512, 1);
+  const TestPoints test = select_test_points(corner.points, corner.normals, {}, 512, 1);
   Random random(2);
   for (int round = 0; round < 50; ++round) {
     const Eigen::Matrix3d R =

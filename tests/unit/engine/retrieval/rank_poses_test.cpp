@@ -29,7 +29,7 @@ Proposal proposal_of(const Eigen::Isometry3d& T, std::uint32_t correspondence) {
 struct Task {
   Surface corner = testing::corner_room(0.04);
   SurfaceGrid grid{corner.points, corner.normals, kCell_m, 2};
-  TestPoints test = select_test_points(corner.points, corner.normals, 512, 1);
+  TestPoints test = select_test_points(corner.points, corner.normals, {}, 512, 1);
   std::vector<Proposal> proposals;
   Eigen::Vector3d centre{1, 1, 1};
 
