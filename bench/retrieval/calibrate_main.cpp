@@ -40,7 +40,7 @@ int run(const Settings& settings) {
 std::string features_help() {
   std::string text = "Fit these alone, a,b,c, of:";
   for (const Feature& feature : all_features()) text += " " + std::string(feature.name);
-  return text + " (quality and coverage only when named; contrast where all files have it)";
+  return text + " (the last three only when named; contrast where all files have it)";
 }
 
 }  // namespace

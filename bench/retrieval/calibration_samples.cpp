@@ -13,6 +13,7 @@ constexpr double kFullMargin = 0.4;          // as in engine/retrieval/confidenc
 constexpr double kFullObservability = 0.05;  // likewise
 
 double as_it_is(double x) { return x; }
+double log_count(double x) { return std::log1p(std::max(x, 0.0)); }
 
 constexpr auto kAlways = Feature::Use::kAlways;
 constexpr auto kWherePresent = Feature::Use::kWherePresent;
@@ -32,12 +33,9 @@ const Feature kFeatures[] = {
     {"explained", "explained", "explained", as_it_is, kAlways},
     {"overlap", "overlap", "overlap", as_it_is, kAlways},
     {"crossed", "crossed", "crossed", as_it_is, kAlways},
-    {"log_inliers",
-     "inliers",
-     "log(1 + inliers)",
-     [](double x) { return std::log1p(std::max(x, 0.0)); },
-     kAlways},
+    {"log_inliers", "inliers", "log(1 + inliers)", log_count, kAlways},
     {"contrast", "contrast", "contrast", as_it_is, kWherePresent},
+    {"log_agreeing", "agreeing", "log(1 + agreeing)", log_count, kOnRequest},
     {"quality", "quality", "quality", as_it_is, kOnRequest},
     {"coverage", "coverage", "coverage", as_it_is, kOnRequest},
 };
