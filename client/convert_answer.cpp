@@ -56,6 +56,8 @@ Hypothesis hypothesis(const v1::Hypothesis& h) {
              .coverage = h.fit().coverage(),
              .quality = h.fit().quality(),
              .margin = h.fit().margin(),
+             .agreeing = h.fit().agreeing(),
+             .contrast = h.fit().contrast(),
              .observability = h.fit().observability()};
   out.covariance = matrix<6>(h.covariance(), "covariance");
   return out;

@@ -63,7 +63,9 @@ Json hypothesis_json(const Hypothesis& h) {
                 {"observability", h.fit.observability},
                 {"explained", h.fit.explained},
                 {"coverage", h.fit.coverage},
-                {"quality", h.fit.quality}};
+                {"quality", h.fit.quality},
+                {"contrast", h.fit.contrast},
+                {"agreeing", h.fit.agreeing}};
   out["covariance"] = covariance_json(h.covariance);
   out["scene_version"] = h.scene_version;
   return out;

@@ -165,6 +165,8 @@ v1::Hypothesis hypothesis_message(const Hypothesis& hypothesis) {
   fit.set_free_space_violation(hypothesis.fit.free_space_violation);
   fit.set_margin(hypothesis.fit.margin);
   fit.set_observability(hypothesis.fit.observability);
+  fit.set_contrast(hypothesis.fit.contrast);
+  fit.set_agreeing(hypothesis.fit.agreeing);
   fit.set_explained(hypothesis.fit.explained);
   fit.set_coverage(hypothesis.fit.coverage);
   fit.set_quality(hypothesis.fit.quality);

@@ -22,6 +22,10 @@ struct Evidence {
   double coverage = 0.0;   // of the directions measured: the entry predicts a range
   double observability =
       0.0;  // weakest freedom: 0 none (a plane), 1 as strong as it gets (a ball of normals)
+  double agreeing = 0.0;  // the query's keypoints of which a descriptor pair agrees
+  double contrast =
+      1.0;  // -1..1: of what tells the pose from its nearest rival, for it less against
+  bool of_object = false;  // measured on an object in the query, not on the query in a place
   Eigen::Vector3d strength =
       Eigen::Vector3d::Zero();  // share of the normals' scatter along x, y, z, target frame
 };

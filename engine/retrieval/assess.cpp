@@ -51,6 +51,7 @@ double possible_in_place(const Evidence& evidence) {
 
 // An object fills little of the view, and clutter may stand before it.
 void expect_object(Evidence& evidence) {
+  evidence.of_object = true;
   const double judged = evidence.explained + evidence.crossed;
   evidence.explained = judged > 0.0 ? evidence.explained / judged : 0.0;
   evidence.crossed = judged > 0.0 ? evidence.crossed / judged : 0.0;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -26,6 +27,9 @@ struct Assessed {
   IcpResult icp;
   Evidence evidence;
   double score = 0.0;  // 0..1, for ranking and for telling rivals
+  std::size_t id = 0;  // its number among the poses that were compared
+  // Against the pose of each id (see contrast_poses); empty where none were compared.
+  std::vector<float> contrast;
 };
 
 // True when the two poses are of one entry and carry what they locate to the same spot, turned

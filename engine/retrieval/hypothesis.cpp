@@ -6,13 +6,11 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "engine/retrieval/agreement.hpp"
+
 namespace landmarkdb {
 
 namespace {
-
-// A correspondence agrees with a pose when its keypoints fall this close: keypoints are one in
-// three voxels.
-constexpr double kInlierCells = 3.0;
 
 Eigen::Matrix4d translation(const Eigen::Vector3d& t) {
   Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
@@ -140,6 +138,8 @@ Hypothesis make_hypothesis(const Judged& judged,
                     .coverage = pose.evidence.coverage,
                     .quality = pose.score,
                     .margin = judged.margin,
+                    .agreeing = pose.evidence.agreeing,
+                    .contrast = pose.evidence.contrast,
                     .observability = pose.evidence.observability};
   hypothesis.covariance = covariance_of(pose, entry, -input.query.cloud.origin);
   return hypothesis;

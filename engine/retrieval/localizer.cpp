@@ -7,6 +7,8 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cloud/resolution.hpp"
+#include "engine/retrieval/agreement.hpp"
+#include "engine/retrieval/contrast.hpp"
 #include "engine/retrieval/entry.hpp"
 #include "engine/retrieval/expected.hpp"
 #include "engine/retrieval/explain.hpp"
@@ -221,6 +223,11 @@ QueryResult Localizer::query(const PointCloud& cloud,
   answer.query.keypoints = views.keypoints();
   const std::vector<Assessed> dropped = keep_expected(input, search.poses);
 
+  {
+    const StageTimer timer(answer.timings.verify);
+    count_agreeing(input, search);
+    contrast_poses(input, search);
+  }
   VerdictOptions verdict_options;
   verdict_options.min_confidence = options.min_confidence;
   const Verdict verdict = judge(search.poses, state_->entries, query.centre, verdict_options);

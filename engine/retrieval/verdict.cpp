@@ -57,6 +57,24 @@ double best_rival(std::size_t i, std::span<const Assessed> poses, std::span<cons
   return best;
 }
 
+// The least contrast to any rival. Where the two were not compared point by point, the scores say
+// it: a lead of kFullLead is full contrast.
+double least_contrast(std::size_t i,
+                      std::span<const Assessed> poses,
+                      std::span<const Entry> entries) {
+  constexpr double kFullLead = 0.4;
+  double least = 1.0;
+  for (std::size_t j = 0; j < poses.size(); ++j) {
+    if (j == i || !rivals(poses[i], poses[j], entries)) continue;
+    const bool compared = poses[j].id < poses[i].contrast.size();
+    const double lead = poses[i].score > 0.0 ? 1.0 - poses[j].score / poses[i].score : 0.0;
+    least = std::min(least,
+                     compared ? static_cast<double>(poses[i].contrast[poses[j].id])
+                              : std::clamp(lead / kFullLead, -1.0, 1.0));
+  }
+  return least;
+}
+
 std::string why_not(const Judged& best) {
   char text[200];
   std::snprintf(
@@ -93,14 +111,15 @@ Verdict judge(std::vector<Assessed> assessed,
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Judged judged{.pose = poses[i], .confidence = 0.0, .margin = 0.0};
     const double rival = best_rival(i, poses, entries);
+    judged.pose.evidence.contrast = least_contrast(i, poses, entries);
     if (poses[i].score > 0.0) judged.margin = std::max(0.0, 1.0 - rival / poses[i].score);
-    judged.confidence = confidence_of(poses[i].evidence, poses[i].score, judged.margin);
+    judged.confidence = confidence_of(judged.pose.evidence, poses[i].score, judged.margin);
     verdict.judged.push_back(std::move(judged));
   }
   const double rival_score = best_rival(0, poses, entries);
-  const bool rivalled = rival_score >= options.rival_share * poses[0].score;
-  // What the best pose would be believed at, were it alone: rivals make it ambiguous, not wrong.
-  const double alone = confidence_of(poses[0].evidence, poses[0].score, 1.0);
+  const bool rivalled = rival_score >= options.rival_share * poses[0].score ||
+                        verdict.judged[0].pose.evidence.contrast < options.least_contrast;
+  const double alone = confidence_alone(poses[0].evidence, poses[0].score);
   if (!rivalled && verdict.judged[0].confidence >= options.min_confidence) {
     verdict.status = QueryStatus::kLocalized;
   } else if (rivalled && alone >= options.min_confidence) {

@@ -27,6 +27,8 @@ struct VerdictOptions {
   double min_confidence = 0.5;
   // A rival whose score reaches this share of the best one's explains the query about as well.
   double rival_share = 0.88;
+  // So does one against which hardly more of the points that tell the two apart speak for the best.
+  double least_contrast = 0.1;
   // Two poses are different places when they are further apart than these (in cells: 0.5 m in a
   // room described at 5 cm, and no more than that in coarser ones), or in different entries.
   double different_translation_cells = 10.0;

@@ -64,8 +64,10 @@ struct Fit {
   double free_space_violation = 0.0;
   double explained = 0.0;
   double coverage = 0.0;
-  double quality = 0.0;  // 0..1: overlap and agreement as one figure; what poses are ranked by
-  double margin = 0.0;   // 0..1: how far ahead of the best different pose
+  double quality = 0.0;   // 0..1: overlap and agreement as one figure; what poses are ranked by
+  double margin = 0.0;    // 0..1: how far ahead of the best different pose
+  double agreeing = 0.0;  // keypoints of which a descriptor pair agrees with the pose
+  double contrast = 0.0;  // -1..1: of the points that fit the pose and its nearest rival unlike
   double observability = 0.0;  // 0..1: weakest of the six freedoms against the strongest
 };
 

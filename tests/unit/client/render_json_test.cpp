@@ -75,7 +75,9 @@ TEST(QueryJson, HasTheDocumentedKeysInTheDocumentedOrder) {
                           "observability",
                           "explained",
                           "coverage",
-                          "quality"));
+                          "quality",
+                          "contrast",
+                          "agreeing"));
   EXPECT_THAT(
       keys(json["query"]),
       ElementsAre("points", "points_used", "invalid", "keypoints", "density_ratio", "seed"));

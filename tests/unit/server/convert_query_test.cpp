@@ -165,6 +165,8 @@ TEST(QueryResultToProto, CarriesEveryFieldAndTheDerivedForms) {
                     .rmse_m = 0.01,
                     .free_space_violation = 0.1,
                     .margin = 0.2,
+                    .agreeing = 17.0,
+                    .contrast = 0.6,
                     .observability = 0.3};
   hypothesis.covariance(0, 5) = 0.125;
   result.hypotheses = {hypothesis};
@@ -197,6 +199,8 @@ TEST(QueryResultToProto, CarriesEveryFieldAndTheDerivedForms) {
   EXPECT_EQ(h.correspondences().putative(), 9U);
   EXPECT_EQ(h.correspondences().inliers(), 5U);
   EXPECT_EQ(h.fit().observability(), 0.3);
+  EXPECT_EQ(h.fit().contrast(), 0.6);
+  EXPECT_EQ(h.fit().agreeing(), 17.0);
   ASSERT_THAT(h.covariance(), SizeIs(36));
   EXPECT_EQ(h.covariance(5), 0.125);
 }

@@ -15,6 +15,8 @@ Evidence convincing() {
   evidence.crossed = 0.01;
   evidence.coverage = 0.95;
   evidence.observability = 0.1;
+  evidence.contrast = 0.6;
+  evidence.agreeing = 80.0;
   return evidence;
 }
 
@@ -23,20 +25,37 @@ TEST(ConfidenceOf, RisesWithWhatSpeaksForAPoseAndFallsWithWhatSpeaksAgainst) {
   const double base = confidence_of(evidence, 0.7, 0.3);
   EXPECT_GT(base, 0.0);
   EXPECT_LT(base, 1.0);
+  EXPECT_GT(confidence_of(evidence, 0.7, 0.4), base);
+  const auto less = [&](double Evidence::*figure, double value) {
+    Evidence other = evidence;
+    other.*figure = value;
+    return confidence_of(other, 0.7, 0.3);
+  };
+  EXPECT_LT(less(&Evidence::explained, 0.8), base);
+  EXPECT_LT(less(&Evidence::contrast, 0.1), base);
+  EXPECT_LT(less(&Evidence::crossed, 0.2), base);
+  EXPECT_LT(less(&Evidence::observability, 0.0), base);
+  EXPECT_LT(less(&Evidence::agreeing, 2.0), base);
+}
+
+TEST(ConfidenceOf, OfAnObjectAsksForQualityAndCoverageToo) {
+  Evidence evidence = convincing();
+  evidence.of_object = true;
+  const double base = confidence_of(evidence, 0.7, 0.3);
   EXPECT_GT(confidence_of(evidence, 0.8, 0.3), base);
   EXPECT_GT(confidence_of(evidence, 0.7, 0.4), base);
-  Evidence less = evidence;
-  less.explained = 0.8;
-  EXPECT_LT(confidence_of(less, 0.7, 0.3), base);
-  less = evidence;
-  less.coverage = 0.5;
-  EXPECT_LT(confidence_of(less, 0.7, 0.3), base);
-  less = evidence;
-  less.crossed = 0.2;
-  EXPECT_LT(confidence_of(less, 0.7, 0.3), base);
-  less = evidence;
-  less.observability = 0.0;
-  EXPECT_LT(confidence_of(less, 0.7, 0.3), base);
+  evidence.coverage = 0.5;
+  EXPECT_LT(confidence_of(evidence, 0.7, 0.3), base);
+}
+
+TEST(ConfidenceAlone, DoesNotLookAtRivals) {
+  Evidence evidence = convincing();
+  const double base = confidence_alone(evidence, 0.7);
+  EXPECT_GT(base, 0.5);
+  evidence.contrast = -1.0;
+  EXPECT_EQ(confidence_alone(evidence, 0.7), base);
+  evidence.explained = 0.7;
+  EXPECT_LT(confidence_alone(evidence, 0.7), 0.5);
 }
 
 TEST(ConfidenceOf, IsAProbabilityForAnyEvidence) {
@@ -52,7 +71,9 @@ TEST(ConfidenceOf, IsAProbabilityForAnyEvidence) {
       }
     }
   }
-  EXPECT_LT(confidence_of(Evidence{}, 0.0, 1.0), 0.001);
+  Evidence nothing;
+  nothing.contrast = 0.0;
+  EXPECT_LT(confidence_of(nothing, 0.0, 1.0), 0.001);
   EXPECT_GT(confidence_of(convincing(), 0.9, 1.0), 0.9);
 }
 
