@@ -117,10 +117,15 @@ Verdict judge(std::vector<Assessed> assessed,
     verdict.judged.push_back(std::move(judged));
   }
   const double rival_score = best_rival(0, poses, entries);
-  const bool rivalled = rival_score >= options.rival_share * poses[0].score ||
-                        verdict.judged[0].pose.evidence.contrast < options.least_contrast;
+  const Evidence& evidence = verdict.judged[0].pose.evidence;
+  const bool in_reach = rival_score >= options.reach_share * poses[0].score;
+  const double least_contrast = in_reach ? options.least_contrast_in_reach : options.least_contrast;
+  const bool slides = !evidence.of_object && evidence.observability < options.least_observability;
+  const bool rivalled = slides || rival_score >= options.rival_share * poses[0].score ||
+                        evidence.contrast < least_contrast;
   const double alone = confidence_alone(poses[0].evidence, poses[0].score);
-  if (!rivalled && verdict.judged[0].confidence >= options.min_confidence) {
+  if (!rivalled && alone >= options.least_alone &&
+      verdict.judged[0].confidence >= options.min_confidence) {
     verdict.status = QueryStatus::kLocalized;
   } else if (rivalled && alone >= options.min_confidence) {
     verdict.status = QueryStatus::kAmbiguous;

@@ -27,8 +27,17 @@ struct VerdictOptions {
   double min_confidence = 0.5;
   // A rival whose score reaches this share of the best one's explains the query about as well.
   double rival_share = 0.88;
-  // So does one against which hardly more of the points that tell the two apart speak for the best.
+  // So does one against which hardly more of the points that tell the two apart speak for the best,
+  // and one in reach (of this share) against which less than two thirds do (0.3 = 0.65 - 0.35).
   double least_contrast = 0.1;
+  double reach_share = 0.65;
+  double least_contrast_in_reach = 0.3;
+  // Below this a place's surface leaves a freedom open (a slide along a wall), and any pose along
+  // it is a rival.
+  double least_observability = 0.01;
+  // A pose that is not this believable by its own evidence answers nothing, however far the others
+  // are behind. The threshold of the log-odds -1: 1 / (1 + e).
+  double least_alone = 0.27;
   // Two poses are different places when they are further apart than these (in cells: 0.5 m in a
   // room described at 5 cm, and no more than that in coarser ones), or in different entries.
   double different_translation_cells = 10.0;
