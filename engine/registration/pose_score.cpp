@@ -69,12 +69,7 @@ float score_pose(const SurfaceGrid& target,
       return sum / static_cast<float>(i) - 1.0F;
     }
     const Eigen::Vector3f p = R_target_source * test.points[i] + t_target_source;
-    const Surfel* surfel = target.near(p);
-    if (surfel == nullptr) continue;
-    const float agreement = surfel->normal.dot(R_target_source * test.normals[i]);
-    if (agreement <= 0.0F) continue;
-    const float distance = surfel->normal.dot(p - surfel->point);
-    sum += agreement * std::exp(factor * distance * distance);
+    sum += surface_fit(target, p, R_target_source * test.normals[i], factor);
   }
   return sum / static_cast<float>(n);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,6 +33,20 @@ struct ScoreOptions {
   std::size_t first_look = 32;  // points after which a hopeless pose is given up
   float hopeless = 0.15F;       // mean score of the first look below which it is
 };
+
+// How well one point lies on the surface: max(0, n.n') exp(factor d^2), d the distance to the plane
+// of the surface near, factor = -1 / (2 sigma^2); 0 where there is none.
+inline float surface_fit(const SurfaceGrid& target,
+                         const Eigen::Vector3f& p,
+                         const Eigen::Vector3f& normal,
+                         float factor) {
+  const Surfel* surfel = target.near(p);
+  if (surfel == nullptr) return 0.0F;
+  const float agreement = surfel->normal.dot(normal);
+  if (agreement <= 0.0F) return 0.0F;
+  const float distance = surfel->normal.dot(p - surfel->point);
+  return agreement * std::exp(factor * distance * distance);
+}
 
 // How well the points lie on the surface under the pose: the mean over the first `count` test
 // points of max(0, n.n') exp(-d^2 / 2 sigma^2), d the distance to the plane of the surface near;

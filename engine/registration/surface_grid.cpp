@@ -121,9 +121,7 @@ void SurfaceGrid::make_table(const Cell& first, const Cell& last) {
 SurfaceGrid::Block& SurfaceGrid::block_at(const Cell& block) {
   std::uint32_t* number = nullptr;
   if (!table_.empty()) {
-    const Cell at = block - table_first_;
-    number = &table_[static_cast<std::size_t>(at.x() + table_size_.x() *
-                                                           (at.y() + table_size_.y() * at.z()))];
+    number = &table_[table_index(block - table_first_)];
     if (*number != kNoBlock) return blocks_[*number];
   } else {
     const std::uint64_t key = key_of(block);

@@ -105,14 +105,16 @@ class SurfaceGrid {
     while (keys_[slot] != key && keys_[slot] != kNoKey) slot = (slot + 1) & mask;
     return slot;
   }
+  std::size_t table_index(const Cell& at) const {
+    return static_cast<std::size_t>(at.x() + table_size_.x() * (at.y() + table_size_.y() * at.z()));
+  }
   // The block's cells, or nullptr.
   const std::uint32_t* find_block(const Cell& block) const {
     std::uint32_t number = kNoBlock;
     if (!table_.empty()) {
       const Cell at = block - table_first_;
       if ((at.array() < 0).any() || (at.array() >= table_size_.array()).any()) return nullptr;
-      number = table_[static_cast<std::size_t>(at.x() + table_size_.x() *
-                                                            (at.y() + table_size_.y() * at.z()))];
+      number = table_[table_index(at)];
       if (number == kNoBlock) return nullptr;
     } else {
       const std::uint64_t key = key_of(block);

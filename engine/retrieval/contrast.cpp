@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/parallel.hpp"
+#include "engine/registration/pose_score.hpp"
 
 namespace landmarkdb {
 
@@ -23,12 +24,7 @@ std::vector<float> fits_of(const QueryView& view,
   std::vector<float> fits(view.sample_points.size(), 0.0F);
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const Eigen::Vector3f p = R * view.sample_points[i] + t;
-    const Surfel* surfel = entry.grid.near(p);
-    if (surfel == nullptr) continue;
-    const float agreement = surfel->normal.dot(R * view.sample_normals[i]);
-    if (agreement <= 0.0F) continue;
-    const float distance = surfel->normal.dot(p - surfel->point);
-    fits[i] = agreement * std::exp(factor * distance * distance);
+    fits[i] = surface_fit(entry.grid, p, R * view.sample_normals[i], factor);
   }
   return fits;
 }

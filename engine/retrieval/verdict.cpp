@@ -108,15 +108,16 @@ Verdict judge(std::vector<Assessed> assessed,
     verdict.reason = "pose: no proposal lies on the surface of any entry";
     return verdict;
   }
+  double rival_score = 0.0;  // of the best pose
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Judged judged{.pose = poses[i], .confidence = 0.0, .margin = 0.0};
     const double rival = best_rival(i, poses, entries);
+    if (i == 0) rival_score = rival;
     judged.pose.evidence.contrast = least_contrast(i, poses, entries);
     if (poses[i].score > 0.0) judged.margin = std::max(0.0, 1.0 - rival / poses[i].score);
     judged.confidence = confidence_of(judged.pose.evidence, poses[i].score, judged.margin);
     verdict.judged.push_back(std::move(judged));
   }
-  const double rival_score = best_rival(0, poses, entries);
   const Evidence& evidence = verdict.judged[0].pose.evidence;
   const bool in_reach = rival_score >= options.reach_share * poses[0].score;
   const double least_contrast = in_reach ? options.least_contrast_in_reach : options.least_contrast;
