@@ -152,10 +152,10 @@ void check_camera(const Camera& camera, std::string_view name) {
   // A principal point further out than this belongs to another unit, not to a lens.
   constexpr double kOutside = 10.0;
   const double size = std::max(camera.width, camera.height);
-  if (!(camera.fx > 0.0) || !(camera.fy > 0.0)) {
+  if (!(camera.fx > 0.0) || camera.fy == 0.0 || !std::isfinite(camera.fy)) {
     std::ostringstream message;
     message << "focal lengths are " << camera.fx << " and " << camera.fy
-            << " pixels, want both positive";
+            << " pixels, want fx positive and fy positive (negative where rows run upwards)";
     refuse(name, message.str());
   }
   if (std::abs(camera.cx) > kOutside * size || std::abs(camera.cy) > kOutside * size) {
