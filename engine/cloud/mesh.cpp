@@ -177,6 +177,10 @@ void add_normal(CloudBuilder& builder,
 }  // namespace
 
 void add_polygon(Mesh& mesh, std::span<const std::uint32_t> corners) {
+  if (mesh.keep_polygons) {
+    if (corners.size() > 2) mesh.polygons.emplace_back(corners.begin(), corners.end());
+    return;
+  }
   for (std::size_t k = 2; k < corners.size(); ++k) {
     mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
   }

@@ -18,9 +18,13 @@ struct Mesh {
   std::vector<Eigen::Vector3f> normals;
   std::vector<std::array<std::uint8_t, 3>> colours;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  // Set before reading, faces are kept as they are written and not split into triangles.
+  bool keep_polygons = false;
+  std::vector<std::vector<std::uint32_t>> polygons;
 };
 
-// Adds a polygon (indices of vertices, at least three) as a fan around its first corner.
+// Adds a polygon (indices of vertices, at least three), as a fan around its first corner unless
+// polygons are kept.
 void add_polygon(Mesh& mesh, std::span<const std::uint32_t> corners);
 
 // Points spread evenly over the surface, about options.mesh_spacing_m apart: as many on each

@@ -9,6 +9,7 @@
 #include "engine/cloud/cloud_builder.hpp"
 #include "engine/cloud/mesh.hpp"
 #include "engine/cloud/read_mesh.hpp"
+#include "engine/cloud/read_ply.hpp"
 #include "engine/cloud/scalar.hpp"
 #include "engine/cloud/text_lines.hpp"
 
@@ -17,8 +18,10 @@ namespace {
 
 class ObjReader {
  public:
-  ObjReader(const Input& input, const ReadOptions& options)
-      : input_(input), options_(options), lines_(input.text()) {}
+  ObjReader(const Input& input, const ReadOptions& options, bool keep_polygons = false)
+      : input_(input), options_(options), lines_(input.text()) {
+    mesh_.keep_polygons = keep_polygons;
+  }
 
   Mesh read() {
     std::string joined;
@@ -119,6 +122,12 @@ class ObjReader {
 };
 
 }  // namespace
+
+Mesh parse_polygons(const Input& input, std::uint64_t max_vertices) {
+  const ReadOptions options{.max_points = max_vertices};
+  if (input.text().starts_with("ply")) return parse_ply_polygons(input, options);
+  return ObjReader(input, options, true).read();
+}
 
 PointCloud parse_obj(const Input& input, const ReadOptions& options) {
   const Mesh mesh = ObjReader(input, options).read();

@@ -253,8 +253,11 @@ void read_faces(const Input& input,
 
 }  // namespace
 
-PointCloud parse_ply(const Input& input, const ReadOptions& options) {
-  const PlyHeader header = parse_ply_header(input, options.max_points);
+namespace {
+
+using Elements = std::vector<PlyElement>;
+
+Elements::const_iterator find_vertices(const Input& input, const PlyHeader& header) {
   const auto vertices =
       std::find_if(header.elements.begin(), header.elements.end(), [](const PlyElement& element) {
         return element.name == "vertex";
@@ -262,24 +265,60 @@ PointCloud parse_ply(const Input& input, const ReadOptions& options) {
   if (vertices == header.elements.end() || vertices->count == 0) {
     refuse(input, "PLY header: no vertices");
   }
+  return vertices;
+}
+
+bool has_faces(const Input& input, const PlyHeader& header, const PlyElement& vertices) {
   const bool is_mesh = std::any_of(header.elements.begin(), header.elements.end(), is_faces);
-  if (is_mesh && vertices->count > std::numeric_limits<std::uint32_t>::max()) {
-    refuse(input, "a mesh of " + std::to_string(vertices->count) + " vertices, want below 2^32");
+  if (is_mesh && vertices.count > std::numeric_limits<std::uint32_t>::max()) {
+    refuse(input, "a mesh of " + std::to_string(vertices.count) + " vertices, want below 2^32");
   }
+  return is_mesh;
+}
+
+// All elements of a file that has faces.
+void read_mesh(const Input& input,
+               const PlyHeader& header,
+               const PlyElement& vertices,
+               Mesh& mesh) {
   BodyReader body(input, header);
-  Mesh mesh;
   for (const PlyElement& element : header.elements) {
-    if (&element == &*vertices) {
-      // Nothing after the vertices matters where there are no faces.
-      if (!is_mesh) return read_points(input, header, element, body, options);
+    if (&element == &vertices) {
       read_mesh_vertices(input, element, body, mesh);
     } else if (is_faces(element)) {
-      read_faces(input, element, vertices->count, body, mesh);
+      read_faces(input, element, vertices.count, body, mesh);
     } else {
       skip_element(input, body, element);
     }
   }
-  return sample_mesh(input, mesh, options);
+}
+
+}  // namespace
+
+Mesh parse_ply_polygons(const Input& input, const ReadOptions& options) {
+  const PlyHeader header = parse_ply_header(input, options.max_points);
+  const auto vertices = find_vertices(input, header);
+  Mesh mesh;
+  mesh.keep_polygons = true;
+  if (has_faces(input, header, *vertices)) read_mesh(input, header, *vertices, mesh);
+  return mesh;
+}
+
+PointCloud parse_ply(const Input& input, const ReadOptions& options) {
+  const PlyHeader header = parse_ply_header(input, options.max_points);
+  const auto vertices = find_vertices(input, header);
+  if (has_faces(input, header, *vertices)) {
+    Mesh mesh;
+    read_mesh(input, header, *vertices, mesh);
+    return sample_mesh(input, mesh, options);
+  }
+  BodyReader body(input, header);
+  for (const PlyElement& element : header.elements) {
+    // Nothing after the vertices matters where there are no faces.
+    if (&element == &*vertices) return read_points(input, header, element, body, options);
+    skip_element(input, body, element);
+  }
+  refuse(input, "PLY header: no vertices");
 }
 
 }  // namespace landmarkdb

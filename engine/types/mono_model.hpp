@@ -26,6 +26,7 @@ struct ModelFeature {
   FeatureType type = FeatureType::kVertex;
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();  // metres, object frame
   std::optional<Eigen::Vector3d> normal{};        // unit; none: seen from everywhere
+  std::int32_t part = -1;  // the circle of a kConicCentre, the face of a kCentroid; -1: none
 };
 
 struct ModelCircle {
