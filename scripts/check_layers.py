@@ -24,6 +24,7 @@ ALLOWED = {
     "engine/matching": CLOUD,
     "engine/registration": CLOUD,
     "engine/mono": CLOUD,
+    "engine/servo": GEOMETRY + ["engine/mono"],
     "engine/retrieval": RETRIEVAL,
     "store": ["schema"] + TYPES,
     "cli": GEOMETRY,
