@@ -4,6 +4,7 @@
 
 #include "engine/base/error.hpp"
 #include "store/catalog.hpp"
+#include "store/model_check.hpp"
 #include "store/reference_schema.hpp"
 #include "store/segment_rows.hpp"
 
@@ -145,6 +146,7 @@ CheckReport check_database(const Database& database, const RunContext& context) 
     }
     context.report("check", total, total);
   });
+  collect(report.findings, [&] { check_models(database, context, report); });
   return report;
 }
 

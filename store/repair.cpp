@@ -6,6 +6,7 @@
 
 #include "engine/base/error.hpp"
 #include "store/check.hpp"
+#include "store/model_check.hpp"
 #include "store/reference_schema.hpp"
 #include "store/scene_changes.hpp"
 #include "store/scene_rows.hpp"
@@ -156,7 +157,9 @@ void note_inactive_scenes(const Database& database, RepairReport& report) {
 
 }  // namespace
 
-RepairReport repair_database(const Database& database, const RunContext& context) {
+RepairReport repair_database(const Database& database,
+                             const RunContext& context,
+                             const MakeTriples& make_triples) {
   RepairReport report;
   context.check("repair");
   attempt(report, [&] { repair_schema(database, report); });
@@ -171,6 +174,7 @@ RepairReport repair_database(const Database& database, const RunContext& context
     }
     note_inactive_scenes(database, report);
   });
+  attempt(report, [&] { repair_models(database, context, make_triples, report); });
   return report;
 }
 

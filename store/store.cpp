@@ -16,6 +16,7 @@
 #include "store/scene_rows.hpp"
 #include "store/segment.hpp"
 #include "store/sqlite.hpp"
+#include "store/store_state.hpp"
 
 namespace landmarkdb {
 
@@ -38,27 +39,6 @@ void refuse_itself(const sqlite::Database& database, const std::string& path) {
 }  // namespace
 
 int schema_version() { return latest_version(all_migrations()); }
-
-struct Store::State {
-  std::unique_ptr<sqlite::Database> database;
-  bool read_only = false;
-  std::vector<std::string> warnings;
-
-  State(std::unique_ptr<sqlite::Database> opened, bool for_reading)
-      : database(std::move(opened)),
-        read_only(for_reading),
-        warnings(location_warnings(*database)) {}
-
-  const sqlite::Database& reader() const { return *database; }
-  const sqlite::Database& writer() const {
-    if (read_only) {
-      throw Error(ErrorCode::kPermissionDenied,
-                  "'" + database->path() + "' was opened for reading only");
-    }
-    return *database;
-  }
-  Transaction snapshot() const { return Transaction(*database, Transaction::Kind::kRead); }
-};
 
 Store::Store(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Store::Store(Store&&) noexcept = default;
@@ -175,8 +155,8 @@ CheckReport Store::check(const RunContext& context) const {
   return check_database(state_->reader(), context);
 }
 
-RepairReport Store::repair(const RunContext& context) {
-  return repair_database(state_->writer(), context);
+RepairReport Store::repair(const RunContext& context, const MakeTriples& make_triples) {
+  return repair_database(state_->writer(), context, make_triples);
 }
 
 OptimizeReport Store::optimize(const RunContext& context) {

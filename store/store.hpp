@@ -9,6 +9,7 @@
 
 #include "engine/base/run_context.hpp"
 #include "engine/types/scene_record.hpp"
+#include "store/model_types.hpp"
 #include "store/store_types.hpp"
 
 namespace landmarkdb {
@@ -96,12 +97,33 @@ class Store {
   void remove_landmark(std::string_view scene, std::string_view landmark);
   std::vector<Landmark> list_landmarks(std::string_view scene) const;
 
+  // Monocular models, by name; their names have nothing to do with those of scenes.
+  std::vector<ModelSummary> list_models() const;
+  ModelSummary show_model(std::string_view name) const;
+  // Reads and verifies one; Error{kDataLoss} says what is damaged.
+  std::shared_ptr<const MonoModelRecord> load_model(std::string_view name) const;
+  // All of them as of one moment; as load_catalog does for scenes.
+  std::shared_ptr<const MonoCatalog> load_models(const RunContext& context,
+                                                 const OnDamagedModel& on_damaged = {},
+                                                 const MonoCatalog* previous = nullptr) const;
+  // Stores a model with what its reader warned of; one of that name is replaced, in one
+  // transaction. Error{kInvalidArgument} for a bad name or a record that does not fit together.
+  InsertModelResult insert_model(const MonoModelRecord& record,
+                                 const std::vector<std::string>& warnings,
+                                 const RunContext& context);
+  void remove_model(std::string_view name);
+  void rename_model(std::string_view old_name, std::string_view new_name);
+  // A search index derived from a model; nothing where none is stored or it is damaged.
+  void save_model_index(std::int64_t model_id, const ModelIndexBlob& index);
+  std::optional<ModelIndexBlob> load_model_index(std::int64_t model_id) const;
+
   // Reads everything: pages, references, digests, shapes. Finds damage, never throws for it (but
   // for a file too broken to be opened at all). Reports the stage "check" in bytes.
   CheckReport check(const RunContext& context) const;
-  // Rebuilds what is derived, drops what nothing refers to, marks damaged versions so that they are
-  // not served. Never removes a scene or changes which version is active.
-  RepairReport repair(const RunContext& context);
+  // Rebuilds what is derived, drops what nothing refers to, marks damaged versions and models so
+  // that they are not served. Never removes a scene or model or changes which version is active.
+  // Damaged triples of models are made anew where `make_triples` says how.
+  RepairReport repair(const RunContext& context, const MakeTriples& make_triples = {});
   // Lets go of versions other than the active one and the one `rollback` would go to, and gives the
   // space back. Needs free disk space as large as the database for the time it runs.
   OptimizeReport optimize(const RunContext& context);

@@ -80,7 +80,8 @@ struct CheckReport {
   std::uint64_t scenes = 0;
   std::uint64_t versions = 0;
   std::uint64_t arrays = 0;
-  std::uint64_t bytes = 0;  // of the arrays that were read
+  std::uint64_t models = 0;
+  std::uint64_t bytes = 0;  // of the arrays and models that were read
   bool ok() const { return findings.empty(); }
 };
 

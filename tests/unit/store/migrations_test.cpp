@@ -64,6 +64,35 @@ TEST(Migrations, EveryOlderVersionIsBroughtUpToDate) {
   }
 }
 
+TEST(Migrations, AFileThatVersion1WroteKeepsItsSceneAndTakesModels) {
+  const TempFolder folder;
+  const std::string path = folder.file("old.db");
+  {
+    const Database database(path, OpenMode::kCreate, 0ms);
+    database.execute(testing::read_file(LANDMARKDB_VERSION1_SQL));
+    database.execute("PRAGMA application_id = " + std::to_string(kApplicationId) +
+                     "; PRAGMA user_version = 1");
+  }
+  EXPECT_EQ(error_of([&] { Store::open_read_only(path); }).code, ErrorCode::kUnimplemented);
+  const std::string before = testing::read_file(path);
+  const MigrationReport plan = Store::migrate(path, true, {});
+  EXPECT_THAT(plan.steps, ElementsAre("0002_mono"));
+  EXPECT_EQ(testing::read_file(path), before);
+
+  const MigrationReport done = Store::migrate(path, false, {});
+  EXPECT_EQ(done.from_version, 1);
+  EXPECT_EQ(done.backup_path, path + ".v1.backup");
+  const Database backup(done.backup_path, OpenMode::kReadOnly, 0ms);
+  EXPECT_EQ(user_version(backup), 1);
+  Store store = Store::open_read_write(path);
+  EXPECT_THAT(store.check({}).findings, ::testing::IsEmpty());
+  EXPECT_EQ(store.show("lobby").versions.size(), 2U);
+  EXPECT_EQ(store.show("lobby").tags.at("floor"), "2");
+  EXPECT_EQ(store.load("lobby")->prepared.size(), 12U);
+  EXPECT_EQ(store.rollback("lobby"), 1);
+  EXPECT_THAT(store.list_models(), ::testing::IsEmpty());
+}
+
 TEST(Migrations, ACurrentDatabaseIsLeftAlone) {
   const TempFolder folder;
   Store::create_or_open(folder.file("x.db"));
@@ -81,7 +110,7 @@ TEST(Migrations, KeepTheScenesAndABackupOfTheOldFile) {
   const auto report =
       migrate_database(path, false, with_next("CREATE TABLE later (i INTEGER) STRICT;"), {});
   EXPECT_THAT(report.steps, ElementsAre("next"));
-  EXPECT_EQ(report.backup_path, path + ".v1.backup");
+  EXPECT_EQ(report.backup_path, path + ".v" + std::to_string(schema_version()) + ".backup");
   EXPECT_EQ(Store::open_read_only(report.backup_path).list_scenes().size(), 1U);
   const Database after(path, OpenMode::kReadOnly, 0ms);
   EXPECT_EQ(after.integer("SELECT count(*) FROM scene"), 1);

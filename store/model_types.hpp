@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/run_context.hpp"
+#include "engine/types/mono_model.hpp"
+
+namespace landmarkdb {
+
+// What can be said of a model without its points.
+struct ModelSummary {
+  std::int64_t id = 0;
+  std::string name;
+  std::string created;  // UTC, "2024-05-01T12:00:00Z"
+  std::string source;   // the file it came from, without folders
+  double unit_scale = 1.0;
+  double diameter_m = 0.0;
+  std::string symmetry;  // the class
+  std::size_t symmetries = 0;
+  std::array<std::size_t, kFeatureTypes> points_of_type{};
+  std::size_t points = 0;
+  std::size_t edges = 0;
+  std::size_t faces = 0;
+  std::size_t circles = 0;
+  std::size_t triples = 0;
+  std::vector<std::string> warnings;
+  std::optional<std::string> damage;  // once a repair has marked it: it is not served
+  std::string sha256;                 // of all but its name and what is derived
+};
+
+struct InsertModelResult {
+  std::int64_t model_id = 0;
+  bool replaced = false;         // a model of that name was there
+  std::uint64_t generation = 0;  // of the database, after the insert
+};
+
+// A model left out of a catalogue because it cannot be read.
+struct DamagedModel {
+  std::int64_t model_id = 0;
+  std::string name;
+  std::string what;
+};
+using OnDamagedModel = std::function<void(const DamagedModel&)>;
+
+// Makes a model's triples anew; the store keeps them but does not know how they are derived.
+using MakeTriples = std::function<std::vector<ModelTriple>(const MonoModel&, const RunContext&)>;
+
+// A search index of one model, derived from it: may be deleted, and is then made anew.
+struct ModelIndexBlob {
+  std::int64_t version = 0;  // of its layout, whoever writes it
+  std::string params;        // what it was made with, free text
+  std::vector<std::byte> quads;
+};
+
+}  // namespace landmarkdb

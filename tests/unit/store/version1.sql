@@ -1,0 +1,130 @@
+-- A database of version 1 as that program wrote it (the sqlite3 shell's .dump): a scene of two versions, a tag, a
+-- landmark. Never edited: migrations are tested on it.
+PRAGMA foreign_keys=OFF;
+BEGIN TRANSACTION;
+CREATE TABLE setting (
+  name  TEXT PRIMARY KEY,
+  value ANY NOT NULL
+) STRICT, WITHOUT ROWID;
+INSERT INTO setting VALUES('generation',4);
+CREATE TABLE scene (
+  id           INTEGER PRIMARY KEY AUTOINCREMENT,
+  name         TEXT NOT NULL UNIQUE CHECK (length(name) BETWEEN 1 AND 128),
+  created      TEXT NOT NULL,
+  last_version INTEGER NOT NULL DEFAULT 0
+) STRICT;
+INSERT INTO scene VALUES(1,'lobby','2026-11-22T19:53:38Z',2);
+CREATE TABLE segment (
+  id       INTEGER PRIMARY KEY AUTOINCREMENT,
+  format   INTEGER NOT NULL,
+  bytes    INTEGER NOT NULL CHECK (bytes >= 0),
+  manifest TEXT NOT NULL,
+  sha256   TEXT NOT NULL CHECK (length(sha256) = 64)
+) STRICT;
+INSERT INTO segment VALUES(1,1,1824,'{"arrays":[{"bytes":144,"dtype":"f32","name":"points","sha256":"af710eda06cbfd8624a3dc16df566ad055881707b0ab1755142f7ad2013378b1","shape":[12,3]},{"bytes":144,"dtype":"f32","name":"normals","sha256":"02c1a6e8e4e1c995d26f3fcb466ebc0fdefdc916af238f781074959a8098970e","shape":[12,3]},{"bytes":24,"dtype":"f32","name":"viewpoints","sha256":"edc5a29e2226b7500bc22e4a09922c6b3b859c14760d5cd74c26eb9e1c755401","shape":[2,3]},{"bytes":24,"dtype":"u16","name":"viewpoint_index","sha256":"7c13f6d2062855f293f5e5c96232136ef149c2802871871e038ac7d582de6d6e","shape":[12]},{"bytes":24,"dtype":"f32","name":"keypoints","sha256":"662b69672f077ed73eb1ceb107bfc3ac8b2f2df298be5d99756b910eb4f96bac","shape":[2,3]},{"bytes":24,"dtype":"f32","name":"keypoint_normals","sha256":"d23388d823a44dcbb17b92ba57a924b9b9e3e9e3bcbd80f5f9a50f6d2bf6f865","shape":[2,3]},{"bytes":32,"dtype":"f32","name":"keypoint_frames","sha256":"89d4fda8aef4e2efcdc1df23c1757e7166d76b8385f085391fd1ec97cc4c12bc","shape":[2,4]},{"bytes":1408,"dtype":"f16","name":"descriptors","sha256":"83d6f71409e8a889164cfd849e51a0f48805e85e3a828aef4799e4062490a6af","shape":[2,352]}],"counts":{"duplicates":15,"not_finite":10,"out_of_range":5,"points":42,"used":12},"dropped_keypoints":3,"format":1,"kind":"place","normals_from_viewpoint":true,"options":{"keypoint_method":"iss","keypoint_spacing_m":0.2,"normal_radius_m":0.15,"shot_radius_m":0.4,"voxel_m":0.05},"origin_m":[4512345.678901,512345.123456789,0.1],"resolution_m":0.05,"sources":["station 1.pcd","Größe.ply"],"up":[0.0,0.0,1.0],"warnings":["units_suspect"]}','7d0929747fd723e408edba5d39241ea0236af5a7d0aed3a19b18dda4d10238d6');
+INSERT INTO segment VALUES(2,1,1824,'{"arrays":[{"bytes":144,"dtype":"f32","name":"points","sha256":"552e9cac8a6553d0e58f0d3c22933a0b6a3f3d32af191a264e09eb6b302ecbc7","shape":[12,3]},{"bytes":144,"dtype":"f32","name":"normals","sha256":"7af85d71b5a4d5e7eecde354902522dbc75364374793eb3044653cf0ac07f705","shape":[12,3]},{"bytes":24,"dtype":"f32","name":"viewpoints","sha256":"edc5a29e2226b7500bc22e4a09922c6b3b859c14760d5cd74c26eb9e1c755401","shape":[2,3]},{"bytes":24,"dtype":"u16","name":"viewpoint_index","sha256":"db2e5034a21145caa5d65ce785f971a934fb7585d3a38ab28b760a7eb9c6ce42","shape":[12]},{"bytes":24,"dtype":"f32","name":"keypoints","sha256":"fe0f4d4d569ef056cafc85d116370fb2cb888c590016ad3eb51ebdd1d61b4140","shape":[2,3]},{"bytes":24,"dtype":"f32","name":"keypoint_normals","sha256":"0489161f4425fc5866f4fec64e6622bd5d163b632517863bb26b8388bc764d16","shape":[2,3]},{"bytes":32,"dtype":"f32","name":"keypoint_frames","sha256":"5b3971d6898df6e4b6b157caf3351156df96da8ab3b500669955829fc677ca11","shape":[2,4]},{"bytes":1408,"dtype":"f16","name":"descriptors","sha256":"cf6115d49193538c62780d6b3738e31326beda4a15a72d696cbc90523f8d3db9","shape":[2,352]}],"counts":{"duplicates":15,"not_finite":10,"out_of_range":5,"points":42,"used":12},"dropped_keypoints":3,"format":1,"kind":"object","normals_from_viewpoint":true,"options":{"keypoint_method":"iss","keypoint_spacing_m":0.2,"normal_radius_m":0.15,"shot_radius_m":0.4,"voxel_m":0.05},"origin_m":[4512345.678901,512345.123456789,0.1],"resolution_m":0.05,"sources":["station 1.pcd","Größe.ply"],"up":[0.0,0.0,1.0],"warnings":["units_suspect"]}','dfdf1d4745ab5c435dd3620588f5d096d411b17dc6fcee815f739f18278fd053');
+CREATE TABLE segment_array (
+  id         INTEGER PRIMARY KEY,
+  segment_id INTEGER NOT NULL REFERENCES segment (id) ON DELETE CASCADE,
+  position   INTEGER NOT NULL CHECK (position >= 0),
+  name       TEXT NOT NULL,
+  dtype      TEXT NOT NULL,
+  shape      TEXT NOT NULL,
+  bytes      INTEGER NOT NULL CHECK (bytes >= 0),
+  sha256     TEXT NOT NULL CHECK (length(sha256) = 64),
+  UNIQUE (segment_id, position)
+) STRICT;
+INSERT INTO segment_array VALUES(1,1,0,'points','f32','[12,3]',144,'af710eda06cbfd8624a3dc16df566ad055881707b0ab1755142f7ad2013378b1');
+INSERT INTO segment_array VALUES(2,1,1,'normals','f32','[12,3]',144,'02c1a6e8e4e1c995d26f3fcb466ebc0fdefdc916af238f781074959a8098970e');
+INSERT INTO segment_array VALUES(3,1,2,'viewpoints','f32','[2,3]',24,'edc5a29e2226b7500bc22e4a09922c6b3b859c14760d5cd74c26eb9e1c755401');
+INSERT INTO segment_array VALUES(4,1,3,'viewpoint_index','u16','[12]',24,'7c13f6d2062855f293f5e5c96232136ef149c2802871871e038ac7d582de6d6e');
+INSERT INTO segment_array VALUES(5,1,4,'keypoints','f32','[2,3]',24,'662b69672f077ed73eb1ceb107bfc3ac8b2f2df298be5d99756b910eb4f96bac');
+INSERT INTO segment_array VALUES(6,1,5,'keypoint_normals','f32','[2,3]',24,'d23388d823a44dcbb17b92ba57a924b9b9e3e9e3bcbd80f5f9a50f6d2bf6f865');
+INSERT INTO segment_array VALUES(7,1,6,'keypoint_frames','f32','[2,4]',32,'89d4fda8aef4e2efcdc1df23c1757e7166d76b8385f085391fd1ec97cc4c12bc');
+INSERT INTO segment_array VALUES(8,1,7,'descriptors','f16','[2,352]',1408,'83d6f71409e8a889164cfd849e51a0f48805e85e3a828aef4799e4062490a6af');
+INSERT INTO segment_array VALUES(9,2,0,'points','f32','[12,3]',144,'552e9cac8a6553d0e58f0d3c22933a0b6a3f3d32af191a264e09eb6b302ecbc7');
+INSERT INTO segment_array VALUES(10,2,1,'normals','f32','[12,3]',144,'7af85d71b5a4d5e7eecde354902522dbc75364374793eb3044653cf0ac07f705');
+INSERT INTO segment_array VALUES(11,2,2,'viewpoints','f32','[2,3]',24,'edc5a29e2226b7500bc22e4a09922c6b3b859c14760d5cd74c26eb9e1c755401');
+INSERT INTO segment_array VALUES(12,2,3,'viewpoint_index','u16','[12]',24,'db2e5034a21145caa5d65ce785f971a934fb7585d3a38ab28b760a7eb9c6ce42');
+INSERT INTO segment_array VALUES(13,2,4,'keypoints','f32','[2,3]',24,'fe0f4d4d569ef056cafc85d116370fb2cb888c590016ad3eb51ebdd1d61b4140');
+INSERT INTO segment_array VALUES(14,2,5,'keypoint_normals','f32','[2,3]',24,'0489161f4425fc5866f4fec64e6622bd5d163b632517863bb26b8388bc764d16');
+INSERT INTO segment_array VALUES(15,2,6,'keypoint_frames','f32','[2,4]',32,'5b3971d6898df6e4b6b157caf3351156df96da8ab3b500669955829fc677ca11');
+INSERT INTO segment_array VALUES(16,2,7,'descriptors','f16','[2,352]',1408,'cf6115d49193538c62780d6b3738e31326beda4a15a72d696cbc90523f8d3db9');
+CREATE TABLE segment_chunk (
+  array_id INTEGER NOT NULL REFERENCES segment_array (id) ON DELETE CASCADE,
+  n        INTEGER NOT NULL CHECK (n >= 0),
+  data     BLOB NOT NULL CHECK (length(data) BETWEEN 1 AND 4194304),
+  PRIMARY KEY (array_id, n)
+) STRICT;
+INSERT INTO segment_chunk VALUES(1,0,X'8cb89640e24c1d40cb652a3f67283c40424609c03a356c3e4107ba3ffd1855c0b7ed23bfd73571c0d7c128bd83f285c066807a3f82479f40240092c0e0de1e402d98df3e9b5b983e0b1a6c4042fbc73fb1ba28c020c96bc0bc9ffdbf940f844091aa9240917e5cc00f06893f59d70cc0820f0d40a26bae3e9b4297404def4e40638058c081357ac018ae4340d27f6640');
+INSERT INTO segment_chunk VALUES(2,0,X'8e3b753fadf64fbe659c4fbe02639abefc96343f703524bfdbe0393f54c3af3ee584183fd541fe3ca57467bf562fdabe0099d3bec44f32bf9728163f8a7d353f441ca93ef3851f3f5d6a2abf7392afbeb9ab293fd56860becc3a683f0cefb7bee9e840bf562f3d3dfddf273fb0abd13dc8fe36bfbe1731bf5c8213beb590a43e41986f3f12a872be563b5bbfbfe3ea3e');
+INSERT INTO segment_chunk VALUES(3,0,X'00000000000000000000c03f000000400000803f0000c03f');
+INSERT INTO segment_chunk VALUES(4,0,X'010000000000010001000100010001000000010001000000');
+INSERT INTO segment_chunk VALUES(5,0,X'bc5d20408e118d40a5e3ec3f2e6291bfe8c3183f455323c0');
+INSERT INTO segment_chunk VALUES(6,0,X'376ede3e99e416bf025a2ebff7464dbfc43216bfba8ce73d');
+INSERT INTO segment_chunk VALUES(7,0,X'25a9083fbfa2523e7d1022bfc67f053fa0f6313fa544e5be75900dbf182bd13d');
+INSERT INTO segment_chunk VALUES(8,0,X'b7008f27822c362b122cec29a829102ed72bbf19312d922dbb284f23cb2b512b8824e8200d2ef728ce29e42a3f2c882cf12dd8295025d2249920d728da25e627ee255f2a2f2ba81fa229951c0e2c161b2320c428fd2b852c2f2bb82a8d2d1f260b2dab2a172d2c2603263f2a4f25f32ca9251227692d4027d723ba2d6b0cdd236c2cbe2c17275328412d5d29bd28241e3d292f29bc18642dfd274e1b9d212828a92dd82c84277729b22143292b2cdf27152d9e2d2727a31e7c27772c552df0288423032eb720682796283b29732207293d29202c2b1ee029062eaa1e9223ec28fb24532ce32b3620802c692d231a112d6d1f592c16283a155c2b242ba32d0c20dd28142a3a28c52d722c271db72bf624bb27f42951244228ab29182bcc228f2df02df12a1e291b26ab2a9a2c4129f125a92de52d0b25be29342d3c226e287d20fd290f2d842c96245b29632a0b2848108019c6246f26dc2b0e2a7025fa279627c82c2426b12c152c552b632cb6292e27992a7b1e43288e294629b62cf3223224181f38269729932bd0273429eb2d892da328b229672cf229562a332de729502b8a28d01f722cd32c362c942ddf1f712c13293d28112d3b2c5923741e442528292f2d172ee52c402cfb2ded234c2cd32c8f2cd629192184285429ae1f552dbe2d122b852a2c13f623811eb0210c2dda25bb2a892d2f2c362d881a122e7a2bbb26c429eb2d212c752d9f297529e1281d2b1327ca2c062a8229ba2d7726f02cad2cfd24c21cb82a7922e727d62c112c2529a729ec2c402c642dd929fd295e28eb294a281829282c480c7525372c641fe520bb297c2dee2d23296524302b382dc4267222aa2c0528352d41291929ac2c752ded2d502d3e1d5b2714211f292b21be2150169f26ef2dbf2dd924fa25eb23fc2a322cc22c5828011f45244b25ce293b2dfb2c182e002ca226822cea20ee290429402d6e2de32b47245d27ed258329f82da32843253f284525482be72c9d28d72b1b2c8618042e8528b32ac2195723531ddb290111c629da235224092b5c2759265b244b2dbd2c0223ee2c8a2cf72d852cc22ba526642cd82de42a2726fb2c582d192c8628ca2a63219a281d200e2ca7285a192429fa2d2027cd2c8e2d7f2c8727e02a3f2cd625a129d01cda2b7d2cb82cb52d0f2369281424fb2a152ce42cac212b2ca6298f2c6120ec25c329992c772cb224132959204424121c3824df2c66220f2c7a2ae428d32bba24e428f7277126e82b892ae2285e2ab92be90aed16c71ded282426132e222c7c28462df72d302d781b012d432b0c245b25c72b9328331cb82c232c782cd12aee2ca4258e2c7e2c8427fe220d26832b912be927ea2d962ddb1f332c522a552c0e21cd225724e52697299524482cb72d1225aa2df5193f2d3124ea2ad22a0f24702dbe295e2aa725f92d442955212627e22b4c2c2e2bb226ad2ae32d8d27712bbe272c29a42b732b6e2d1c2a792a7828d32c0924dd278c215e251c1ce2247b219d2c8b2cea2dd52a592cf72b64230c28092ea82d942cf8220d1d73289f24702af02cd4246e2cbc28aa2dba2a6a28852ba02dbe2aad28a526511795248226dc2cb4190e2ee827cb1e932df61a9c23d02a532c7d2876262329782d642c5e2bb7261c1ea225f92a00260f28712cd32d542d582da928022c912550269d20ce2b202c0d2a552dac288826702dd1164426c72cbd2b510a662b092c962c9e2bf728152e1718c728c42a772c9125862a1e2c6026de2c6828f9280e197728cb2c682dd61be1223f27682c4f2c052d6f2c88285328272c072863250b2ca32a052a862dc42cf4296a17351bd424a92c3f2cd12704241329d2214127a61e5d2c3421a21d322dad2c551fdc2d6324f12d6c2c671a8c2d8f2842248525c92b5b2d6426572c84284c2bbe25b12c8f2d942c582cd32cb228af248c295328ae1fec29f32b812bf92b1027632d9d26b72d');
+INSERT INTO segment_chunk VALUES(9,0,X'5fd5743faf741f401b72693f9aac1140d2cc1fc011041940f4e93fc06cd43dc0873d8a40f2b7d8bfa54f98bf80598c3e1ff86a40e6ddfebfd9449cc0aa929cc0958f0dc0a27bc1bf93d65840acfbe33fb55e9dc05008214075a493be7c1afe3e40157abfd839b8bf14b9753fca97933f7c2d9ec06acbe0bfdbb7813efd6672c0143022c07be025401465fa3e32cd9fbf');
+INSERT INTO segment_chunk VALUES(10,0,X'f83edabe550c06bf2cd63c3fdadb9d3edaeaafbeca1663bfd59358bf6a9ab6bebfebcabe79cc563da09cff3e66685d3f733a06bfea4447bf2ac1b03e75c2033fcff9f8be62c5343fe650163f9b694d3fef9edabd7aa4df3e7443d43e545f4cbf64ea7fbedc6c3e3f5daf1ebf9a8c703efe3f6ebff09d8f3ee00308bf760fba3e4fe9433f25f231bf5b558dbe0aef293f');
+INSERT INTO segment_chunk VALUES(11,0,X'00000000000000000000c03f000000400000803f0000c03f');
+INSERT INTO segment_chunk VALUES(12,0,X'000000000100000001000000000001000000010001000000');
+INSERT INTO segment_chunk VALUES(13,0,X'9caf9440ef7758be8aabf9bf62ce24402934164063f7b43e');
+INSERT INTO segment_chunk VALUES(14,0,X'f54c273f4e59c83ebedd253f0795f83d310dd83e830066bf');
+INSERT INTO segment_chunk VALUES(15,0,X'88d8bbbea308a73d60acc03e2cca583f03e9eb3dfe0d7a3fe4b55fbd2c58303e');
+INSERT INTO segment_chunk VALUES(16,0,X'13228d2a2b2c932d6428112d6327c728072c482d1a019b2c4b2ccc21ad28c62c1b2ba62d982cc020fa2dfb277b2bcc21f6286d2a492da4286e26c12980294a29f9286a278c2ddf2b33286f252c204d2a8e2aed2c1e279f2cbd2dc22b072cac2d7e280d254115462c142cc7251525572d5a1d522c5a247d18d32dea2c1123482dd527f02ddc2c5719ce1eba267f29d528362c4a2d622cd62ae328022d802d6f2af92a15286b2de1264a213f22d5254226532df3239528502cb21ded25191e832c99247622962c1f289e2c462d791f1e24fa28b222ea2b6125452dd62b1321132cf32a812bb12b6727e42ad22b351c6d26ce2a9a2bbf29bb2c682ca827a92ba428bc2a4729a12b231c3d2df91de52d112b5826102b382819215326522dd727932c562d932d902c832bd41f86262328c5294c2d9926d22c4f207c28562d6521162c1e2155269128e82cbe1eaf2bd429b82a3c2c822dda26fe2c3a299f26ab287d29632c1d260c22b12d96293c27d82d392c5d1f9328bb2ca52cd5292927662a432c352c002ab32bd1273e18ab1ef926db25a71de52dc229eb1e7d22151eb82d4b2ce72ccb2c8329df25c82a4824252afe234529852cd82d502c4b265629c322e122d32cb427842a0a292827642c24212c281d29622602182227a0285b2c1a2b44288c2a5c2cb72d7824472c142d4225652ada2cbe245a2c1426be287b21fb2c8025ca112a2d5a2db81e132cd323b926a9270d273225722b621f442cbb2a6a2aef2dea298c28e82456292d21882c262d0a2cde2a662b9a28912ddf26b61b7e2c5e2a24253f1ce92c2229052d532b0927412bfc241126571eb22d541862238a28e02c1f2b5c2c932a5c2c232878274a2c142c54217f2a632db22b3c2d8029be2b0120e62c35289e1b57262f2da7286f2d4d2c24237c2c6b25672b5922f72c3c29a42d902954244d2cb92b8428fe2ddf2db223ff2bd02bfc20422ca72c3b28992d6f2c1a280e29782d462bf027382bb12c242c192c562dce1e5320aa2bdb22222c3b2cee2c592d6e2d582d4623422d7928af257b2dc428542cb329ec288124e124c229ac2c8828bd29e72c1d23a619592a0329192cad2d412a862ac72ad82c1f2a782b6e250c2dd7293124a42b572325205c248f2aff2cf425ec2cfd2cb42a6224242b6925471eb1296b24462c3429d725f728bb24022aa724d92c881a8b28f1282d1d9a29332d6e2bf72c5e2c4c2ce32c6f1ea82dfc25b4289f16692ca220bf2c992582280628f4253528fa1990270d2bfe2ae0166c2cbe2b2b1ae62ba12b8b27512bc31aa52c9f11d126562c702d482dea2ceb2cad2c812af82cea21fc27312adc29fd215a2cf92c0c1e712dd72c03203a210f2c062d981c5b28362aa926452d262c4c2834295524252bfc286e2cf32c1229c12b8127eb2ace22121f3e2a3c291f2c6e20a52d8c2bc92b8e22142d3d2bea2bad23c9196e2c262c9d290a2da82c9a2cc825002bde2c7618942820285f24a82d5518b2255129802c8c2a1c2ab51fe52579276428f52c6924e8257d285e2c562a202bde23632c372c502d6329d626bc2cc12360278028642bd629192b972c4c293929022cab0a6f27702838280d2cde2a721ec02c2e2c052c112b401fd128822c072de12cdc25cd2b382aab2c022d5c270229172ba1144e2d3b28622df12a382d422d0f20d92c842d382c2b26572d6829682b8e2ce820192d5827562bdf234613312d382c9f2be52b3a2c9818762def2b73244115652c7f04ce26c424e12ca92023249d2b6d28842be5204d2b352bcb2c562362294829882da721391d502c0f2c481ee72ac52a282d5e28f6295426fc22e8269f2b2923a81eb72c922bc41beb2c2d2dde2c512da4214e2469081929362b1a2b2022382b132d20280923442aae28cf20322d282be621b82c162a422daa2c282d052d992b5b2dbc29972b942c4928c02b6e1bf125032ca42afd2bab2cc22c');
+CREATE TABLE scene_version (
+  scene_id           INTEGER NOT NULL REFERENCES scene (id) ON DELETE CASCADE,
+  version            INTEGER NOT NULL CHECK (version >= 1),
+  segment_id         INTEGER NOT NULL UNIQUE REFERENCES segment (id),
+  state              TEXT NOT NULL CHECK (state IN ('building', 'active', 'retired')),
+  created            TEXT NOT NULL,
+  retired            TEXT,
+  damage             TEXT,
+  kind               TEXT NOT NULL,
+  points             INTEGER NOT NULL,
+  keypoints          INTEGER NOT NULL,
+  voxel_m            REAL NOT NULL,
+  normal_radius_m    REAL NOT NULL,
+  shot_radius_m      REAL NOT NULL,
+  keypoint_spacing_m REAL NOT NULL,
+  keypoint_method    TEXT NOT NULL,
+  up_x               REAL,
+  up_y               REAL,
+  up_z               REAL,
+  sources            TEXT NOT NULL,
+  warnings           TEXT NOT NULL,
+  PRIMARY KEY (scene_id, version)
+) STRICT;
+INSERT INTO scene_version VALUES(1,1,1,'retired','2026-11-22T19:53:38Z','2026-11-22T19:53:38Z',NULL,'place',12,2,0.050000000000000002775,0.14999999999999999444,0.4000000000000000222,0.2000000000000000111,'iss',0.0,0.0,1.0,'["station 1.pcd","Größe.ply"]','["units_suspect"]');
+INSERT INTO scene_version VALUES(1,2,2,'active','2026-11-22T19:53:38Z',NULL,NULL,'object',12,2,0.050000000000000002775,0.14999999999999999444,0.4000000000000000222,0.2000000000000000111,'iss',0.0,0.0,1.0,'["station 1.pcd","Größe.ply"]','["units_suspect"]');
+CREATE TABLE tag (
+  scene_id INTEGER NOT NULL REFERENCES scene (id) ON DELETE CASCADE,
+  key      TEXT NOT NULL,
+  value    TEXT NOT NULL,
+  PRIMARY KEY (scene_id, key)
+) STRICT, WITHOUT ROWID;
+INSERT INTO tag VALUES(1,'floor','2');
+CREATE TABLE landmark (
+  scene_id INTEGER NOT NULL REFERENCES scene (id) ON DELETE CASCADE,
+  name     TEXT NOT NULL,
+  min_x_m  REAL NOT NULL,
+  min_y_m  REAL NOT NULL,
+  min_z_m  REAL NOT NULL,
+  max_x_m  REAL NOT NULL CHECK (max_x_m > min_x_m),
+  max_y_m  REAL NOT NULL CHECK (max_y_m > min_y_m),
+  max_z_m  REAL NOT NULL CHECK (max_z_m > min_z_m),
+  PRIMARY KEY (scene_id, name)
+) STRICT, WITHOUT ROWID;
+INSERT INTO landmark VALUES(1,'air-vents',0.0,0.0,0.0,1.0,2.0,3.0);
+DELETE FROM sqlite_sequence;
+INSERT INTO sqlite_sequence VALUES('scene',1);
+INSERT INTO sqlite_sequence VALUES('segment',2);
+CREATE UNIQUE INDEX scene_version_active ON scene_version (scene_id) WHERE state = 'active';
+CREATE VIEW scene_list AS
+SELECT scene.name, scene_version.version, scene_version.kind, scene_version.points,
+       scene_version.keypoints, segment.bytes, scene_version.created, scene_version.damage
+FROM scene
+JOIN scene_version ON scene_version.scene_id = scene.id AND scene_version.state = 'active'
+JOIN segment ON segment.id = scene_version.segment_id
+ORDER BY scene.name;
+COMMIT;
