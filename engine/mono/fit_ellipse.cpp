@@ -118,12 +118,28 @@ class EllipseAt {
   double a_, b_, cos_, sin_;
 };
 
+struct Cost {
+  double sum = 0.0;
+  double squares_px2 = 0.0;  // of the distances alone
+};
+
 struct Normal {
   Matrix5d H = Matrix5d::Zero();
   Vector5d g = Vector5d::Zero();
-  double cost = 0.0;
-  double squares_px2 = 0.0;
+  Cost cost{};
 };
+
+Cost cost_of(const Vector5d& e, std::span<const EdgePoint> points, const EdgeNoise& noise) {
+  const EllipseAt here(e);
+  const Eigen::Vector2d weights(1.0 / noise.position_px, 1.0 / noise.direction_rad);
+  Cost cost;
+  for (const EdgePoint& point : points) {
+    const Eigen::Vector2d r = here.residual(point);
+    cost.sum += r.cwiseProduct(weights).squaredNorm();
+    cost.squares_px2 += r[0] * r[0];
+  }
+  return cost;
+}
 
 Normal normal_equations(const Vector5d& e,
                         std::span<const EdgePoint> points,
@@ -149,8 +165,8 @@ Normal normal_equations(const Vector5d& e,
     J = weights.asDiagonal() * J;
     sums.H.noalias() += J.transpose() * J;
     sums.g.noalias() += J.transpose() * scaled;
-    sums.cost += scaled.squaredNorm();
-    sums.squares_px2 += r[0] * r[0];
+    sums.cost.sum += scaled.squaredNorm();
+    sums.cost.squares_px2 += r[0] * r[0];
   }
   return sums;
 }
@@ -177,7 +193,6 @@ ImageEllipse ellipse_from(const Vector5d& e) {
 
 std::optional<EllipseFit> fit_ellipse(std::span<const EdgePoint> points, const EdgeNoise& noise) {
   constexpr std::size_t kFewest = 6;
-  constexpr int kSteps = 2;
   if (points.size() < kFewest) return std::nullopt;
   const std::optional<Frame> frame = frame_of(points);
   if (!frame) return std::nullopt;
@@ -186,26 +201,28 @@ std::optional<EllipseFit> fit_ellipse(std::span<const EdgePoint> points, const E
   const std::optional<ImageEllipse> start = ellipse_of(*conic, *frame);
   if (!start) return std::nullopt;
 
+  // One step of Gauss-Newton; a second changes the centre by less than 1 % of its error. A circle's
+  // angle is free: a little damping keeps the system regular.
   Vector5d e = parameters_of(*start);
-  Normal sums = normal_equations(e, points, noise);
-  for (int step = 0; step < kSteps; ++step) {
-    // A circle's angle is free: a little damping keeps the system regular.
-    Matrix5d H = sums.H;
-    H.diagonal() *= 1.0 + 1e-6;
-    H.diagonal().array() += 1e-9;
-    const Vector5d next = e - H.ldlt().solve(sums.g);
-    if (!next.allFinite() || !(next[2] > 0.0) || !(next[3] > 0.0)) break;
-    const Normal trial = normal_equations(next, points, noise);
-    if (!(trial.cost < sums.cost)) break;
-    e = next;
-    sums = trial;
+  const Normal sums = normal_equations(e, points, noise);
+  Matrix5d H = sums.H;
+  H.diagonal() *= 1.0 + 1e-6;
+  H.diagonal().array() += 1e-9;
+  const Eigen::LDLT<Matrix5d> solver(H);
+  const Vector5d next = e - solver.solve(sums.g);
+  Cost cost = sums.cost;
+  if (next.allFinite() && next[2] > 0.0 && next[3] > 0.0) {
+    const Cost trial = cost_of(next, points, noise);
+    if (trial.sum < cost.sum) {
+      e = next;
+      cost = trial;
+    }
   }
   EllipseFit fit;
   fit.ellipse = ellipse_from(e);
-  fit.ellipse.rms_px = std::sqrt(sums.squares_px2 / static_cast<double>(points.size()));
-  Matrix5d H = sums.H;
-  H.diagonal().array() += 1e-9;
-  const Eigen::Matrix2d covariance = H.inverse().topLeftCorner<2, 2>();
+  fit.ellipse.rms_px = std::sqrt(cost.squares_px2 / static_cast<double>(points.size()));
+  const Eigen::Matrix2d covariance =
+      solver.solve(Eigen::Matrix<double, 5, 2>::Identity()).topRows<2>();
   fit.center_sigma_px =
       std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues()[1]);
   if (!std::isfinite(fit.center_sigma_px)) return std::nullopt;

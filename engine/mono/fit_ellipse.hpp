@@ -22,7 +22,7 @@ struct EllipseFit {
 };
 
 // The ellipse nearest to edge points, by positions and directions: the conic whose distances and
-// angles to them, to first order, are smallest, then two steps of Gauss-Newton on the same.
+// angles to them, to first order, are smallest, then a step of Gauss-Newton on the same.
 //
 // Rows v and d of a point (x, y) with unit tangent (tx, ty), th = (A, B, C, D, E, F):
 // v = (y^2, xy, x^2, y, x, 1), d = (2 y ty, x ty + y tx, 2 x tx, ty, tx, 0); minimises
