@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   cli::set_up_program(
       app,
       "landmarkdb-indexer",
-      "Turn 3D scans into a database of places and objects, and keep it",
+      "Turn 3D scans and models into a database of places and objects, and keep it",
       {{"landmarkdb-indexer --db site.db add lobby lobby.ply", "describe a scan and store it"},
        {"landmarkdb-indexer --db site.db list", "what is in the database"},
        {"landmarkdb-indexer add --help", "all about one command"}});
@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   indexer::add_add_command(app, program);
   indexer::add_scene_commands(app, program);
   indexer::add_landmark_commands(app, program);
+  indexer::add_model_commands(app, program);
   indexer::add_upkeep_commands(app, program);
   indexer::add_transfer_commands(app, program);
   return cli::run_main(argc, argv, app, [&] { return program.action(); });

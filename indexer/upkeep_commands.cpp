@@ -8,6 +8,7 @@
 #include "cli/help.hpp"
 #include "cli/table.hpp"
 #include "engine/base/error.hpp"
+#include "engine/mono/model_triples.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/long_job.hpp"
 #include "indexer/scene_view.hpp"
@@ -32,7 +33,8 @@ int run_check(const Program& program) {
   job.finish_progress();
   const std::string read =
       "read " + counted(report.scenes, "scene") + ", " + counted(report.versions, "version") +
-      ", " + counted(report.arrays, "array") + ", " + cli::bytes_text(report.bytes) + ": ";
+      ", " + counted(report.arrays, "array") + ", " + counted(report.models, "model") + ", " +
+      cli::bytes_text(report.bytes) + ": ";
   const std::string verdict =
       report.ok() ? "all sound\n" : counted(report.findings.size(), "finding") + "\n";
   program.print({{"ok", report.ok()},
@@ -40,6 +42,7 @@ int run_check(const Program& program) {
                  {"scenes", report.scenes},
                  {"versions", report.versions},
                  {"arrays", report.arrays},
+                 {"models", report.models},
                  {"bytes", report.bytes}},
                 lines(report.findings) + read + verdict);
   return damaged_unless(report.ok());
@@ -47,7 +50,8 @@ int run_check(const Program& program) {
 
 int run_repair(const Program& program) {
   LongJob job(program);
-  const RepairReport report = Store::open_read_write(program.database()).repair(job.context());
+  const RepairReport report =
+      Store::open_read_write(program.database()).repair(job.context(), make_triples);
   job.finish_progress();
   std::string text = lines(report.repaired);
   for (const std::string& left : report.remaining) text += "not repaired: " + left + '\n';

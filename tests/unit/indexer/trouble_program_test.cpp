@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
+#include "store/sqlite.hpp"
 #include "tests/unit/indexer/indexer_fixture.hpp"
 
 namespace landmarkdb::indexer::testing {
@@ -21,6 +22,16 @@ class IndexerTrouble : public IndexerProgram {
     EXPECT_EQ(result.out, "");
     EXPECT_TRUE(result.err.starts_with("landmarkdb-indexer: ")) << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  }
+  // 64 bytes from the middle of the largest chunk of an array.
+  std::string piece_of_largest_chunk() const {
+    const sqlite::Database database(db_, sqlite::OpenMode::kReadOnly, std::chrono::milliseconds(0));
+    sqlite::Statement row(database,
+                          "SELECT substr(data, length(data) / 2, 64) FROM segment_chunk "
+                          "ORDER BY length(data) DESC LIMIT 1");
+    if (!row.step()) return {};
+    const auto blob = row.blob(0);
+    return {reinterpret_cast<const char*>(blob.data()), blob.size()};
   }
 };
 
@@ -196,8 +207,9 @@ TEST_F(IndexerTrouble, ADamagedDatabaseIsStatus5AndSaysWhere) {
   add("room");
   run({"optimize", "--quiet"});
   std::string bytes = bytes_of(db_);
-  // The middle of the file is the scene's arrays, the largest thing in it.
-  for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 64; ++i) bytes[i] ^= '\x55';
+  const std::size_t at = bytes.find(piece_of_largest_chunk());
+  ASSERT_NE(at, std::string::npos);
+  for (std::size_t i = at; i < at + 64; ++i) bytes[i] ^= '\x55';
   write("site.db", bytes);
   const RunResult result = run({"check", "--quiet"});
   EXPECT_EQ(result.status, 5) << result.out << result.err;
