@@ -1,0 +1,338 @@
+#include "engine/mono/pose_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "engine/mono/point_pose.hpp"
+#include "engine/mono/refine_pose.hpp"
+
+namespace landmarkdb {
+namespace {
+
+// Tolerances in pixels of a 640 pixels wide image: the quick look, then after each refinement.
+constexpr double kLook_px = 8.0;
+constexpr std::array<double, 3> kRounds_px{5.0, 3.5, 3.5};
+constexpr double kFinal_px = 3.5;
+constexpr std::size_t kLeastHits = 5;
+constexpr double kLeastShare = 0.35;    // of the visible points
+constexpr double kHuber = 2.0;          // sigmas
+constexpr double kChanceOfLink = 0.25;  // at most, of two chance matches: see score
+constexpr double kDirection_rad = 12.0 * std::numbers::pi / 180.0;
+
+Eigen::Vector2d ideal(const ImageView& image, const Eigen::Vector3d& X) {
+  return image.focal_px() * X.head<2>() / X.z();
+}
+
+double turned_apart(double a, double b) {
+  return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi));
+}
+
+}  // namespace
+
+double log10_binomial_tail(std::size_t trials, std::size_t hits, double p) {
+  if (hits == 0) return 0.0;
+  if (hits > trials || !(p > 0.0)) return hits > trials ? -300.0 : -300.0;
+  if (p >= 1.0) return 0.0;
+  // Terms from `hits` on; each is the last times (n - k) / (k + 1) * p / (1 - p).
+  const double n = static_cast<double>(trials), k0 = static_cast<double>(hits);
+  const double log_first = std::lgamma(n + 1.0) - std::lgamma(k0 + 1.0) -
+                           std::lgamma(n - k0 + 1.0) + k0 * std::log(p) + (n - k0) * std::log1p(-p);
+  double sum = 1.0, term = 1.0;
+  for (double k = k0; k < n; k += 1.0) {
+    term *= (n - k) / (k + 1.0) * p / (1.0 - p);
+    sum += term;
+  }
+  return std::min(0.0, (log_first + std::log(sum)) / std::numbers::ln10);
+}
+
+PoseCheck::PoseCheck(std::span<const SearchModel> models,
+                     const ImageView& image,
+                     const EdgeGrid& edges,
+                     const Camera& camera,
+                     const CheckOptions& options)
+    : models_(models),
+      image_(image),
+      edges_(edges),
+      camera_(camera),
+      options_(options),
+      marks_(image.size(), 0),
+      marks_distance_(image.size(), 0.0F),
+      taken_(image.size(), 0) {}
+
+std::size_t PoseCheck::collect(std::uint32_t model,
+                               const RigidPose& pose,
+                               std::span<const std::uint16_t> seen,
+                               double reach_px,
+                               std::size_t need) {
+  const SearchModel& search = models_[model];
+  const double reach2 = reach_px * reach_px;
+  matches_.clear();
+  ++call_;
+  std::size_t left = seen.size();
+  for (const std::uint16_t id : seen) {
+    if (matches_.size() + left < need) break;
+    --left;
+    const PosePoint& point = search.points[id];
+    Eigen::Vector2d xy;
+    if (point.radius_m > 0.0) {
+      const SeenRay ray = seen_ray(point, pose);
+      if (!ray.ok) continue;
+      xy = image_.focal_px() * ray.ray;
+    } else {
+      const Eigen::Vector3d X = pose * point.xyz;
+      if (!(X.z() > 0.0)) continue;
+      xy = ideal(image_, X);
+    }
+    const int at = image_.nearest(static_cast<std::uint8_t>(search.model().points[id].type), xy);
+    if (at < 0) continue;
+    const std::size_t i = static_cast<std::size_t>(at);
+    const double d2 = (image_[i].xy - xy).squaredNorm();
+    if (d2 > reach2 || taken_[i]) continue;
+    const float distance = static_cast<float>(std::sqrt(d2));
+    if (marks_[i] == call_) {  // two of the model's points at one feature: the nearer has it
+      if (distance >= marks_distance_[i]) continue;
+      for (Match& match : matches_) {
+        if (match.image == i) match = {id, static_cast<std::uint16_t>(i), distance};
+      }
+    } else {
+      marks_[i] = call_;
+      matches_.push_back({id, static_cast<std::uint16_t>(i), distance});
+    }
+    marks_distance_[i] = distance;
+  }
+  return matches_.size();
+}
+
+std::span<const Match> PoseCheck::look(std::uint32_t model, const RigidPose& pose) {
+  ++looks_;
+  const SearchModel& search = models_[model];
+  const double depth = (pose * search.center).z();
+  if (!(depth >= options_.min_depth_m) || !(depth <= options_.max_depth_m)) return {};
+  const Eigen::Vector3d sight = -(pose.R.transpose() * pose.t) - search.center;
+  const std::vector<std::uint16_t>& seen = search.seen[nearest_view(sight.normalized())];
+  const std::size_t need =
+      std::max(kLeastHits,
+               static_cast<std::size_t>(std::ceil(kLeastShare * static_cast<double>(seen.size()))));
+  if (seen.size() < need || collect(model, pose, seen, kLook_px * options_.scale, need) < need)
+    return {};
+  return matches_;
+}
+
+bool PoseCheck::refine(std::uint32_t model, RigidPose& pose, Candidate* result) const {
+  std::vector<PosePoint> points;
+  points.reserve(matches_.size());
+  for (const Match& match : matches_) {
+    PosePoint point = models_[model].points[match.model];
+    point.uv = image_[match.image].uv;
+    point.sigma_px = image_[match.image].sigma_px;
+    points.push_back(point);
+  }
+  RefineOptions options;
+  options.huber = kHuber;
+  RefineState state;
+  if (!start_refinement(points, {}, camera_, pose, options, state)) return false;
+  refine_steps(points, {}, camera_, options, result == nullptr ? 6 : options.max_steps, state);
+  pose = state.pose;
+  if (result != nullptr) result->covariance = pose_covariance(state.equations);
+  return pose.t.allFinite();
+}
+
+std::optional<Candidate> PoseCheck::settle(std::uint32_t model,
+                                           const RigidPose& start,
+                                           std::span<const Match> first) {
+  const SearchModel& search = models_[model];
+  matches_.assign(first.begin(), first.end());
+  Candidate candidate;
+  candidate.model = model;
+  candidate.pose = start;
+  std::vector<std::uint16_t> seen;
+  for (std::size_t round = 0; round < kRounds_px.size(); ++round) {
+    if (!refine(model, candidate.pose, nullptr)) return std::nullopt;
+    const Eigen::Vector3d eye = -(candidate.pose.R.transpose() * candidate.pose.t);
+    if (round + 1 < kRounds_px.size()) {
+      seen = search.seen[nearest_view((eye - search.center).normalized())];
+    } else {
+      const std::vector<bool> exact = search.visibility.points_from(eye);
+      seen.clear();
+      for (std::size_t i = 0; i < exact.size(); ++i) {
+        if (exact[i]) seen.push_back(static_cast<std::uint16_t>(i));
+      }
+    }
+    if (collect(model, candidate.pose, seen, kRounds_px[round] * options_.scale, 0) < kLeastHits) {
+      return std::nullopt;
+    }
+  }
+  if (!refine(model, candidate.pose, &candidate)) return std::nullopt;
+  const double depth = (candidate.pose * search.center).z();
+  if (!(depth >= options_.min_depth_m) || !(depth <= options_.max_depth_m)) return std::nullopt;
+  candidate.visible = seen.size();
+  candidate.matches = matches_;
+  double sum = 0.0;
+  for (Match& match : candidate.matches) {
+    const SeenRay ray = seen_ray(search.points[match.model], candidate.pose);
+    if (!ray.ok) return std::nullopt;
+    const double d = (distort(camera_, ray.ray) - image_[match.image].uv).norm();
+    match.distance_px = static_cast<float>(d);
+    sum += d * d;
+  }
+  candidate.rms_px = std::sqrt(sum / static_cast<double>(candidate.matches.size()));
+  candidate.log10_nfa = score(candidate, seen);
+  return candidate;
+}
+
+// Points: of those visible, four fix the pose and the others meet a feature by chance with the
+// probability that a disc of the tolerance holds one of their type. Links: an edge between two
+// matched points has its link in the image, which the quads of the search ask for twice.
+// Directions: an image vertex' edges lie along the model's.
+double PoseCheck::score(const Candidate& candidate, std::span<const std::uint16_t> seen) const {
+  const SearchModel& search = models_[candidate.model];
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
+  std::array<double, kFeatureTypes> of_type{};
+  for (const std::uint16_t id : seen) {
+    const Eigen::Vector3d X = candidate.pose * search.points[id].xyz;
+    if (!(X.z() > 0.0)) continue;
+    low = low.cwiseMin(ideal(image_, X));
+    high = high.cwiseMax(ideal(image_, X));
+    of_type[static_cast<std::size_t>(search.model().points[id].type)] += 1.0;
+  }
+  const double reach = kFinal_px * options_.scale;
+  low.array() -= 2.0 * reach;
+  high.array() += 2.0 * reach;
+  std::array<double, kFeatureTypes> in_box{};
+  for (const ImageView::Point& point : image_.points()) {
+    if ((point.xy.array() >= low.array()).all() && (point.xy.array() <= high.array()).all()) {
+      in_box[point.type] += 1.0;
+    }
+  }
+  const double disc = std::numbers::pi * reach * reach / (high - low).prod();
+  double p = 0.0;
+  for (std::size_t type = 0; type < kFeatureTypes; ++type) p += of_type[type] * in_box[type];
+  p = 1.0 - std::exp(-disc * p / static_cast<double>(seen.size()));
+  const std::size_t hits = candidate.matches.size();
+  double log10_nfa =
+      options_.log10_tests +
+      log10_binomial_tail(seen.size() - std::min<std::size_t>(4, seen.size()), hits - 4, p);
+
+  std::size_t edges = 0, linked = 0, arms = 0, fitting = 0;
+  double chance_of_arm = 0.0;
+  std::vector<int> image_of(search.points.size(), -1);
+  for (const Match& match : candidate.matches) image_of[match.model] = match.image;
+  for (const Match& match : candidate.matches) {
+    const ImageView::Point& at = image_[match.image];
+    const Eigen::Vector3d here = candidate.pose * search.points[match.model].xyz;
+    for (const std::uint32_t other : search.neighbours[match.model]) {
+      const int image = image_of[other];
+      if (image >= 0 && other > match.model) {
+        ++edges;
+        linked += image_.linked(match.image, static_cast<std::size_t>(image)) ? 1 : 0;
+      }
+      if (at.directions.empty()) continue;
+      const Eigen::Vector3d there = candidate.pose * search.points[other].xyz;
+      if (!(there.z() > 0.0)) continue;
+      const Eigen::Vector2d d = ideal(image_, there) - ideal(image_, here);
+      const double direction = std::atan2(d.y(), d.x());
+      ++arms;
+      chance_of_arm += std::min(
+          0.9, static_cast<double>(at.directions.size()) * kDirection_rad / std::numbers::pi);
+      fitting += std::any_of(at.directions.begin(),
+                             at.directions.end(),
+                             [&](double seen_direction) {
+                               return turned_apart(seen_direction, direction) < kDirection_rad;
+                             })
+                     ? 1
+                     : 0;
+    }
+  }
+  if (image_.link_count() > 0 && edges > 2) {
+    // A point is linked to as many others as on the mean, out of the eight around it.
+    const double degree =
+        2.0 * static_cast<double>(image_.link_count()) / static_cast<double>(image_.size());
+    const double q = std::clamp(degree / 8.0, 0.02, kChanceOfLink);
+    log10_nfa += log10_binomial_tail(edges - 2, linked > 2 ? linked - 2 : 0, q);
+  }
+  if (arms > 2) {
+    log10_nfa += log10_binomial_tail(
+        arms - 2, fitting > 2 ? fitting - 2 : 0, chance_of_arm / static_cast<double>(arms));
+  }
+  return log10_nfa;
+}
+
+double PoseCheck::score_edges(std::span<const EdgeSample> samples, double share) const {
+  if (samples.size() < 8) return 0.0;
+  // Samples of one straight edge come and go together: one in eight counts as a trial of its own.
+  constexpr std::size_t kTogether = 8;
+  constexpr double kBand_px = 4.0, kTurn = 40.0 / 180.0;  // 2 px and 20 degrees, either way
+  // Edge points come in lines: in a band across them there is one for each pixel of its length.
+  const double p = std::clamp(edges_.density() * kBand_px * 3.0 * kTurn, 0.02, 0.9);
+  const std::size_t trials = samples.size() / kTogether;
+  const std::size_t hits = static_cast<std::size_t>(share * static_cast<double>(trials));
+  return log10_binomial_tail(trials, hits, p);
+}
+
+void PoseCheck::settle_on_edges(Candidate& candidate) const {
+  if (edges_.empty()) return;
+  constexpr double kStep_px = 6.0;
+  constexpr std::size_t kMostSamples = 600;
+  constexpr std::array<double, 4> kReach_px{6.0, 4.0, 3.0, 2.0};
+  constexpr double kCosine = 0.906;      // 25 degrees
+  constexpr double kEdgeSigma_px = 1.0;  // samples stand close: their errors go together
+  const SearchModel& search = models_[candidate.model];
+  std::vector<PosePoint> points;
+  for (const Match& match : candidate.matches) {
+    PosePoint point = search.points[match.model];
+    point.uv = image_[match.image].uv;
+    point.sigma_px = image_[match.image].sigma_px;
+    points.push_back(point);
+  }
+  std::vector<PoseEdge> along;
+  RigidPose pose = candidate.pose;
+  std::vector<EdgeSample> samples =
+      visible_edges(search, camera_, pose, kStep_px * options_.scale, kMostSamples);
+  RefineState state;
+  bool refined = false;
+  for (const double reach : kReach_px) {
+    along.clear();
+    for (const EdgeSample& sample : samples) {
+      const EdgePoint* edge =
+          edges_.nearest(sample.uv, sample.normal, reach * options_.scale, kCosine);
+      if (edge != nullptr) {
+        along.push_back({sample.xyz, edge->uv.cast<double>(), sample.normal, kEdgeSigma_px});
+      }
+    }
+    RefineOptions options;
+    options.huber = kHuber;
+    options.max_steps = 4;
+    if (!start_refinement(points, along, camera_, pose, options, state)) break;
+    refine_steps(points, along, camera_, options, options.max_steps, state);
+    if (!state.pose.t.allFinite()) break;
+    pose = state.pose;
+    refined = true;
+    samples = visible_edges(search, camera_, pose, kStep_px * options_.scale, kMostSamples);
+  }
+  const double share = edge_share(samples, edges_);
+  const double before = edge_share(
+      visible_edges(search, camera_, candidate.pose, kStep_px * options_.scale, kMostSamples),
+      edges_);
+  candidate.edge_share = std::max(share, before);
+  if (refined && share >= before) {
+    candidate.pose = pose;
+    candidate.covariance = pose_covariance(state.equations);
+    double sum = 0.0;
+    for (Match& match : candidate.matches) {
+      const SeenRay ray = seen_ray(search.points[match.model], pose);
+      const double d = ray.ok ? (distort(camera_, ray.ray) - image_[match.image].uv).norm() : 1e3;
+      match.distance_px = static_cast<float>(d);
+      sum += d * d;
+    }
+    candidate.rms_px = std::sqrt(sum / static_cast<double>(candidate.matches.size()));
+  }
+  candidate.log10_nfa += score_edges(samples, candidate.edge_share);
+}
+
+void PoseCheck::take(const Candidate& candidate) {
+  for (const Match& match : candidate.matches) taken_[match.image] = 1;
+}
+
+}  // namespace landmarkdb

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "engine/geometry/camera.hpp"
+#include "engine/mono/edge_grid.hpp"
+#include "engine/mono/image_view.hpp"
+#include "engine/mono/rigid_pose.hpp"
+#include "engine/mono/search_model.hpp"
+#include "engine/types/recognition.hpp"
+
+namespace landmarkdb {
+
+// A model's point and the image point (by its number in the ImageView) that it is held for.
+struct Match {
+  std::uint16_t model = 0;
+  std::uint16_t image = 0;
+  float distance_px = 0.0F;
+};
+
+// One model at one pose with what speaks for it.
+struct Candidate {
+  std::uint32_t model = 0;  // index into the search models
+  RigidPose pose;
+  std::vector<Match> matches{};
+  std::size_t visible = 0;
+  double rms_px = 0.0;
+  double log10_nfa = 0.0;  // of points, links, directions and edges together
+  double edge_share = 0.0;
+  bool ambiguous = false;  // `twin`, the other tilt of a plane, fits about as well
+  RigidPose twin{};
+  double twin_odds = 0.0;  // of the twin against the pose
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+struct CheckOptions {
+  double min_depth_m = 0.05, max_depth_m = 20.0;
+  double log10_tests = 5.0;  // how many hypotheses there could have been (1e5: method B)
+  double scale = 1.0;        // of the pixel tolerances, which are those of a 640 pixels wide image
+};
+
+// Puts hypotheses to the test: how many of the model's visible points meet an image feature of
+// their type (Huttenlocher and Ullman 1990), and how likely that many are by chance (Moisan and
+// Stival 2004). One a search: it keeps marks between calls. Not thread-safe.
+class PoseCheck {
+ public:
+  PoseCheck(std::span<const SearchModel> models,
+            const ImageView& image,
+            const EdgeGrid& edges,
+            const Camera& camera,
+            const CheckOptions& options);
+
+  // The quick look: matches within 8 px, enough of them to go on with. `taken`: image points that
+  // other objects hold. Empty: not enough.
+  std::span<const Match> look(std::uint32_t model, const RigidPose& pose);
+
+  // Refines a pose that passed the quick look, counting again at 5 and 3.5 px, and says what speaks
+  // for it. nullopt where too little is left.
+  std::optional<Candidate> settle(std::uint32_t model,
+                                  const RigidPose& pose,
+                                  std::span<const Match> start);
+
+  // Refinement with the edges of the image too, and their share; the score counts them from there.
+  void settle_on_edges(Candidate& candidate) const;
+
+  void take(const Candidate& candidate);
+  bool is_taken(std::size_t image_point) const { return taken_[image_point] != 0; }
+
+  std::size_t looks() const { return looks_; }
+
+ private:
+  std::size_t collect(std::uint32_t model,
+                      const RigidPose& pose,
+                      std::span<const std::uint16_t> seen,
+                      double reach_px,
+                      std::size_t need);
+  bool refine(std::uint32_t model, RigidPose& pose, Candidate* result) const;
+  double score(const Candidate& candidate, std::span<const std::uint16_t> seen) const;
+  double score_edges(std::span<const EdgeSample> samples, double share) const;
+
+  std::span<const SearchModel> models_;
+  const ImageView& image_;
+  const EdgeGrid& edges_;
+  const Camera& camera_;
+  CheckOptions options_;
+  std::vector<std::uint32_t> marks_;  // by image point: the call that has used it
+  std::vector<float> marks_distance_;
+  std::vector<std::uint8_t> taken_;
+  std::uint32_t call_ = 0;
+  std::size_t looks_ = 0;
+  std::vector<Match> matches_;
+};
+
+// log10 of P(at least `hits` of `trials`), each by chance `p`.
+double log10_binomial_tail(std::size_t trials, std::size_t hits, double p);
+
+}  // namespace landmarkdb

@@ -1,0 +1,214 @@
+#include "engine/mono/recognizer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/error.hpp"
+#include "engine/mono/answer.hpp"
+#include "engine/mono/candidate_pool.hpp"
+#include "engine/mono/find_features.hpp"
+#include "engine/mono/image_quads.hpp"
+#include "engine/mono/quad_index.hpp"
+#include "engine/mono/rivals.hpp"
+#include "engine/mono/search_model.hpp"
+#include "engine/mono/vote_search.hpp"
+
+namespace landmarkdb {
+namespace {
+
+// Fours of image points whose codes are worked out: at 60 features all there are; 400 linked ones
+// would give a million.
+constexpr std::size_t kMostQuads = 20000;
+// Those with two links only are many and say little: a sample of them.
+constexpr std::size_t kMostPairs = 12000;
+constexpr double kReach_px = 8.0;  // of the table of nearest features: the quick look's tolerance
+constexpr double kImageWidth_px = 640.0;  // the pixel tolerances are those of such an image
+constexpr std::size_t kFewest = 4;        // points that fix a pose
+
+double scale_of(const ImageFeatures& features) {
+  return std::max(1.0, std::max(features.width, features.height) / kImageWidth_px);
+}
+
+void check_request(const ImageFeatures& features,
+                   const Camera& camera,
+                   const RecognizeOptions& options) {
+  const auto refuse = [](const std::string& what) {
+    throw Error(ErrorCode::kInvalidArgument, what);
+  };
+  if (features.width != camera.width || features.height != camera.height) {
+    refuse("the camera is for images of " + std::to_string(camera.width) + " x " +
+           std::to_string(camera.height) + " pixels, the image has " +
+           std::to_string(features.width) + " x " + std::to_string(features.height));
+  }
+  if (!(camera.fx > 0.0) || camera.fy == 0.0 || !std::isfinite(camera.fx) ||
+      !std::isfinite(camera.fy) || !std::isfinite(camera.cx) || !std::isfinite(camera.cy)) {
+    refuse("the camera's focal lengths and principal point are not usable");
+  }
+  if (!(options.min_depth_m > 0.0) || !(options.max_depth_m > options.min_depth_m)) {
+    refuse("the depth range is empty, want 0 < min_depth_m < max_depth_m");
+  }
+}
+
+}  // namespace
+
+class Recognizer::Impl {
+ public:
+  explicit Impl(std::shared_ptr<const MonoCatalog> catalog)
+      : catalog_(std::move(catalog)), models_(prepare(*catalog_)), index_(models_) {}
+
+  RecognizeResult recognize(const ImageFeatures& features,
+                            const Camera& camera,
+                            const RecognizeOptions& options,
+                            const RunContext& run) const;
+
+ private:
+  static std::vector<SearchModel> prepare(const MonoCatalog& catalog) {
+    std::vector<SearchModel> models;
+    for (const MonoCatalogEntry& entry : catalog.entries)
+      models.push_back(prepare_model(entry.record));
+    return models;
+  }
+  std::vector<char> wanted(const RecognizeOptions& options) const;
+  bool search(const ImageView& image,
+              std::span<const char> wanted,
+              const RecognizeOptions& options,
+              const RunContext& run,
+              CandidatePool& pool,
+              RecognizeTimings& timings) const;
+
+  std::shared_ptr<const MonoCatalog> catalog_;
+  std::vector<SearchModel> models_;
+  QuadIndex index_;
+};
+
+std::vector<char> Recognizer::Impl::wanted(const RecognizeOptions& options) const {
+  std::vector<char> result(models_.size(), options.models.empty() ? 1 : 0);
+  for (const std::string& name : options.models) {
+    bool found = false;
+    for (std::size_t i = 0; i < models_.size(); ++i) {
+      if (models_[i].model().name != name) continue;
+      result[i] = 1;
+      found = true;
+    }
+    if (!found) throw Error(ErrorCode::kInvalidArgument, "there is no model \"" + name + "\"");
+  }
+  return result;
+}
+
+bool Recognizer::Impl::search(const ImageView& image,
+                              std::span<const char> wanted,
+                              const RecognizeOptions& options,
+                              const RunContext& run,
+                              CandidatePool& pool,
+                              RecognizeTimings& timings) const {
+  bool any_linked = false;
+  unsigned free_types = 0;
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    if (!wanted[i]) continue;
+    const bool linked = is_linked(models_[i].model());
+    any_linked = any_linked || linked;
+    if (linked && image.link_count() > 0) continue;
+    for (const ModelFeature& point : models_[i].model().points)
+      free_types |= 1U << static_cast<unsigned>(point.type);
+  }
+  const VoteOptions votes{options.min_depth_m, options.max_depth_m, wanted};
+  bool complete = true;
+  for (const auto find_quads : {chained_quads, linked_quads}) {
+    if (!any_linked || image.link_count() == 0 || pool.beyond_doubt()) break;
+    ImageQuads quads;
+    {
+      const StageTimer timer(timings.lookup);
+      quads = find_quads(image, find_quads == linked_quads ? kMostPairs : kMostQuads);
+    }
+    const StageTimer timer(timings.verify);
+    complete = search_by_votes(models_, index_, image, quads.quads, votes, run, pool) &&
+               !quads.cut_short && complete;
+  }
+  if (free_types != 0) {
+    ImageQuads quads;
+    {
+      const StageTimer timer(timings.lookup);
+      quads = free_quads(image, free_types, kMostQuads);
+    }
+    const StageTimer timer(timings.verify);
+    complete = search_by_votes(models_, index_, image, quads.quads, votes, run, pool) &&
+               !quads.cut_short && complete;
+  }
+  return complete;
+}
+
+RecognizeResult Recognizer::Impl::recognize(const ImageFeatures& features,
+                                            const Camera& camera,
+                                            const RecognizeOptions& options,
+                                            const RunContext& run) const {
+  RecognizeResult result;
+  const StageTimer total(result.timings.total);
+  check_request(features, camera, options);
+  const std::vector<char> wanted_models = wanted(options);
+  result.image_points = features.points.size();
+  run.check("lookup");
+  const double scale = scale_of(features);
+  const ImageView image(features, camera, kReach_px * scale);
+  if (image.left_out() > 0) result.warnings.push_back("outside_lens_model");
+  if (models_.empty()) {
+    result.reason = "there is no model to look for";
+    return result;
+  }
+  if (image.size() < kFewest) {
+    result.reason =
+        "the image has " + std::to_string(image.size()) + " usable feature points, want at least 4";
+    return result;
+  }
+  const EdgeGrid edges(features);
+  CheckOptions check_options{.min_depth_m = options.min_depth_m,
+                             .max_depth_m = options.max_depth_m,
+                             .log10_tests = 5.0,
+                             .scale = scale};
+  PoseCheck check(models_, image, edges, camera, check_options);
+  CandidatePool pool(models_, check);
+  const bool complete = search(image, wanted_models, options, run, pool, result.timings);
+  if (!complete) result.warnings.push_back("search_cut_short");
+  {
+    const StageTimer timer(result.timings.refine);
+    settle_rivals(models_, image, camera, check, pool, run);
+  }
+  write_answer(models_, image, edges, pool.candidates(), options, scale, result);
+  if (result.status == RecognizeStatus::kNotFound && !complete) {
+    result.reason += "; there was more to look at than the limit allows";
+  }
+  return result;
+}
+
+Recognizer::Recognizer(std::shared_ptr<const MonoCatalog> catalog)
+    : impl_(std::make_unique<const Impl>(std::move(catalog))) {}
+
+Recognizer::~Recognizer() = default;
+
+RecognizeResult Recognizer::recognize(const GreyImage& image,
+                                      const Camera& camera,
+                                      const RecognizeOptions& options,
+                                      const RunContext& run) const {
+  StageTimings::Duration finding{};
+  ImageFeatures features;
+  {
+    const StageTimer timer(finding);
+    features = find_image_features(image, FeatureSearchOptions{}, run);
+  }
+  RecognizeResult result = impl_->recognize(features, camera, options, run);
+  result.timings.features = finding;
+  result.timings.total += finding;
+  return result;
+}
+
+RecognizeResult Recognizer::recognize(const ImageFeatures& features,
+                                      const Camera& camera,
+                                      const RecognizeOptions& options,
+                                      const RunContext& run) const {
+  return impl_->recognize(features, camera, options, run);
+}
+
+}  // namespace landmarkdb

@@ -1,0 +1,112 @@
+#include "engine/mono/rivals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/mono/point_pose.hpp"
+#include "engine/mono/refine_pose.hpp"
+
+namespace landmarkdb {
+namespace {
+
+constexpr std::size_t kSettled = 8;    // candidates that are brought to rest
+constexpr std::size_t kMostKept = 24;  // that are remembered as rivals
+constexpr int kClimbs = 4;             // a grid of six is crossed in as many places, two at a time
+
+void sort_by_nfa(std::vector<Candidate>& candidates, std::size_t most) {
+  std::stable_sort(
+      candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+        return a.log10_nfa < b.log10_nfa;
+      });
+  if (candidates.size() > most)
+    candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(most), candidates.end());
+}
+
+// Tries the poses that carry a model's lookalike onto this one.
+void try_lookalikes(std::span<const SearchModel> models,
+                    const Candidate& from,
+                    PoseCheck& check,
+                    CandidatePool& pool) {
+  const std::uint32_t model = from.model;
+  const RigidPose pose = from.pose;  // the pool may move `from`
+  for (const Eigen::Isometry3d& T : models[model].lookalikes) {
+    const RigidPose moved{pose.R * T.linear(), pose.R * T.translation() + pose.t};
+    const std::span<const Match> matches = check.look(model, moved);
+    if (matches.empty()) continue;
+    const std::vector<Match> start(matches.begin(), matches.end());
+    std::optional<Candidate> candidate = check.settle(model, moved, start);
+    if (candidate) pool.add(std::move(*candidate));
+  }
+}
+
+// The other tilt of a plane that explains the same points: the better becomes the pose, and both
+// are known where the noise cannot tell them apart.
+void settle_twins(std::span<const SearchModel> models,
+                  const ImageView& image,
+                  const Camera& camera,
+                  Candidate& candidate) {
+  std::vector<PosePoint> points;
+  double sigma_px = 0.0;
+  for (const Match& match : candidate.matches) {
+    PosePoint point = models[candidate.model].points[match.model];
+    point.uv = image[match.image].uv;
+    point.sigma_px = image[match.image].sigma_px;
+    sigma_px += point.sigma_px / static_cast<double>(candidate.matches.size());
+    points.push_back(point);
+  }
+  PointPoseOptions options;
+  options.huber = 2.0;
+  options.sigma_px = std::max(sigma_px, candidate.rms_px / std::sqrt(2.0));
+  const PointPoses found = solve_points(points, camera, options);
+  if (found.count == 0) return;
+  const RefineOptions refine{.huber = 2.0};
+  RefineState now;
+  if (!start_refinement(points, {}, camera, candidate.pose, refine, now)) return;
+  if (found.poses[0].cost < now.equations.cost * (1.0 - 1e-3) - 1e-3) {
+    candidate.pose = found.poses[0].pose;
+    candidate.covariance = found.poses[0].covariance;
+    candidate.rms_px = found.poses[0].rms_px;
+  }
+  if (found.status != PoseStatus::kAmbiguous) return;
+  candidate.ambiguous = true;
+  // Whichever of the two the candidate is not.
+  const bool first = (found.poses[0].pose.R - candidate.pose.R).norm() >
+                     (found.poses[1].pose.R - candidate.pose.R).norm();
+  candidate.twin = found.poses[first ? 0 : 1].pose;
+  const double variance = options.sigma_px * options.sigma_px / (sigma_px * sigma_px);
+  candidate.twin_odds = std::exp(
+      -0.5 * std::min(100.0, std::abs(found.poses[1].cost - found.poses[0].cost) / variance));
+}
+
+}  // namespace
+
+void settle_rivals(std::span<const SearchModel> models,
+                   const ImageView& image,
+                   const Camera& camera,
+                   PoseCheck& check,
+                   CandidatePool& pool,
+                   const RunContext& run) {
+  std::vector<Candidate>& candidates = pool.candidates();
+  sort_by_nfa(candidates, kMostKept);
+  for (int climb = 0; climb < kClimbs && !candidates.empty(); ++climb) {
+    const double best = candidates.front().log10_nfa;
+    const std::size_t count = climb == 0 ? std::min<std::size_t>(3, candidates.size()) : 1;
+    const std::vector<Candidate> from(candidates.begin(),
+                                      candidates.begin() + static_cast<std::ptrdiff_t>(count));
+    for (const Candidate& candidate : from) {
+      run.check("refine");
+      try_lookalikes(models, candidate, check, pool);
+    }
+    sort_by_nfa(candidates, kMostKept);
+    if (climb > 0 && !(candidates.front().log10_nfa < best)) break;
+  }
+  for (std::size_t i = 0; i < std::min(kSettled, candidates.size()); ++i) {
+    run.check("refine");
+    settle_twins(models, image, camera, candidates[i]);
+    check.settle_on_edges(candidates[i]);
+  }
+  sort_by_nfa(candidates, kMostKept);
+}
+
+}  // namespace landmarkdb

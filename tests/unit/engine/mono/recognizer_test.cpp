@@ -1,0 +1,294 @@
+#include "engine/mono/recognizer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "engine/base/error.hpp"
+#include "engine/base/random.hpp"
+#include "engine/geometry/pose.hpp"
+#include "engine/mono/search_model.hpp"
+#include "tests/support/make_mono_scene.hpp"
+
+namespace landmarkdb {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::make_mono_catalog;
+using testing::make_mono_model;
+using testing::make_mono_scene;
+using testing::MonoScene;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+std::shared_ptr<const MonoCatalog> catalog() {
+  static const auto made = make_mono_catalog({.seed = 1}, 12);
+  return made;
+}
+
+const Recognizer& recognizer() {
+  static const Recognizer made(catalog());
+  return made;
+}
+
+RecognizeResult ask(const MonoScene& scene, const RecognizeOptions& options = {}) {
+  return recognizer().recognize(scene.features, scene.camera, options, RunContext{});
+}
+
+bool is_right(const MonoHypothesis& h, const std::string& name, const RigidPose& truth) {
+  return h.model == name &&
+         rotation_angle_rad(h.T_camera_object.linear().transpose() * truth.R) < 10 * kDegree &&
+         (h.T_camera_object.translation() - truth.t).norm() < 0.08;
+}
+
+std::string message_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing thrown";
+}
+
+TEST(Recognizer, FindsModelsAmongClutterAndNothingWrong) {
+  int asked = 0, right = 0, wrong = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const std::size_t which = seed % catalog()->entries.size();
+    const MonoModelRecord& record = *catalog()->entries[which].record;
+    const MonoScene scene = make_mono_scene(&record, {.seed = seed});
+    const RecognizeResult result = ask(scene);
+    const bool found = !result.hypotheses.empty() &&
+                       is_right(result.hypotheses[0], record.model.name, scene.truth);
+    if (result.status == RecognizeStatus::kRecognized && !found) ++wrong;
+    if (scene.true_features < 8) continue;
+    ++asked;
+    right += found ? 1 : 0;
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GE(asked, 15);
+  EXPECT_GE(right, asked * 85 / 100) << "of " << asked;
+}
+
+TEST(Recognizer, FindsNothingWhereNoKnownObjectIs) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto other = make_mono_model({.seed = 5000 + seed});
+    const MonoScene scene = make_mono_scene(seed % 2 == 0 ? other.get() : nullptr, {.seed = seed});
+    const RecognizeResult result = ask(scene);
+    EXPECT_EQ(result.status, RecognizeStatus::kNotFound) << seed;
+    EXPECT_FALSE(result.reason.empty());
+  }
+}
+
+TEST(Recognizer, TellsPairsThatReprojectAndACovariance) {
+  const MonoModelRecord& record = *catalog()->entries[3].record;
+  const MonoScene scene = make_mono_scene(&record, {.seed = 77, .features = 30, .missing = 0.1});
+  const RecognizeResult result = ask(scene);
+  ASSERT_EQ(result.status, RecognizeStatus::kRecognized);
+  const MonoHypothesis& best = result.hypotheses[0];
+  EXPECT_GE(best.pairs.size(), 8U);
+  double sum = 0.0;
+  for (const MonoPair& pair : best.pairs) {
+    const auto uv =
+        project(scene.camera, best.T_camera_object * record.model.points[pair.model].xyz);
+    ASSERT_TRUE(uv);
+    const double residual = (*uv - scene.features.points[pair.image].uv).norm();
+    EXPECT_NEAR(residual, pair.residual_px, 1e-3);
+    EXPECT_EQ(record.model.points[pair.model].type, scene.features.points[pair.image].type);
+    sum += residual * residual;
+  }
+  EXPECT_NEAR(std::sqrt(sum / static_cast<double>(best.pairs.size())), best.rms_px, 1e-3);
+  EXPECT_GT(best.covariance.diagonal().minCoeff(), 0.0);
+  const Eigen::Vector3d error = best.T_camera_object.translation() - scene.truth.t;
+  EXPECT_LT(error.norm(), 5.0 * std::sqrt(best.covariance.topLeftCorner<3, 3>().trace()));
+}
+
+TEST(Recognizer, GivesTheSameAnswerTwice) {
+  const MonoScene scene = make_mono_scene(catalog()->entries[5].record.get(), {.seed = 9});
+  const RecognizeResult one = ask(scene), other = ask(scene);
+  ASSERT_EQ(one.hypotheses.size(), other.hypotheses.size());
+  for (std::size_t i = 0; i < one.hypotheses.size(); ++i) {
+    EXPECT_EQ(one.hypotheses[i].T_camera_object.matrix(),
+              other.hypotheses[i].T_camera_object.matrix());
+    EXPECT_EQ(one.hypotheses[i].confidence, other.hypotheses[i].confidence);
+  }
+}
+
+TEST(Recognizer, LooksForTheNamedModelsOnly) {
+  const MonoScene scene =
+      make_mono_scene(catalog()->entries[3].record.get(), {.seed = 77, .missing = 0.1});
+  const RecognizeResult right = ask(scene, {.models = {"model3"}});
+  EXPECT_EQ(right.status, RecognizeStatus::kRecognized);
+  const RecognizeResult other = ask(scene, {.models = {"model4"}});
+  EXPECT_EQ(other.status, RecognizeStatus::kNotFound);
+  EXPECT_THAT(message_of([&] { ask(scene, {.models = {"castle"}}); }), HasSubstr("\"castle\""));
+}
+
+TEST(Recognizer, DoesNotTakeAMirroredModelForIt) {
+  auto mirrored = std::make_shared<MonoModelRecord>(*catalog()->entries[3].record);
+  for (ModelFeature& point : mirrored->model.points) point.xyz.x() = -point.xyz.x();
+  for (auto& face : mirrored->model.faces) std::reverse(face.begin(), face.end());
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const MonoScene scene =
+        make_mono_scene(mirrored.get(), {.seed = seed, .features = 30, .missing = 0.0});
+    const RecognizeResult result = ask(scene);
+    EXPECT_EQ(result.status, RecognizeStatus::kNotFound) << seed;
+  }
+}
+
+TEST(Recognizer, SaysWhyThereIsNothing) {
+  MonoScene scene = make_mono_scene(nullptr, {.seed = 1, .features = 0});
+  EXPECT_THAT(ask(scene).reason, HasSubstr("0 usable feature points"));
+  scene = make_mono_scene(nullptr, {.seed = 1, .features = 1});
+  EXPECT_THAT(ask(scene).reason, HasSubstr("1 usable feature points"));
+  const Recognizer none(std::make_shared<MonoCatalog>());
+  EXPECT_THAT(none.recognize(scene.features, scene.camera, {}, {}).reason, HasSubstr("no model"));
+}
+
+TEST(Recognizer, EndsOnThousandsOfFeaturesAndSaysThatItLeftSomeOut) {
+  const MonoScene scene = make_mono_scene(nullptr, {.seed = 1, .features = 2000});
+  const RecognizeResult result = ask(scene);
+  EXPECT_EQ(result.status, RecognizeStatus::kNotFound);
+  EXPECT_THAT(result.reason, HasSubstr("limit"));
+}
+
+TEST(Recognizer, BearsDuplicatesAndFeaturesAtTheBorder) {
+  const MonoModelRecord& record = *catalog()->entries[3].record;
+  MonoScene scene = make_mono_scene(&record, {.seed = 77, .features = 30, .missing = 0.1});
+  const std::size_t count = scene.features.points.size();
+  for (std::size_t i = 0; i < count; ++i) scene.features.points.push_back(scene.features.points[i]);
+  for (const double edge : {0.0, 639.0}) {
+    ImageFeature feature;
+    feature.uv = {edge, edge * 479.0 / 639.0};
+    scene.features.points.push_back(feature);
+  }
+  const RecognizeResult result = ask(scene);
+  ASSERT_FALSE(result.hypotheses.empty());
+  EXPECT_TRUE(is_right(result.hypotheses[0], "model3", scene.truth));
+  std::set<std::uint32_t> images;
+  for (const MonoPair& pair : result.hypotheses[0].pairs) images.insert(pair.image);
+  EXPECT_EQ(images.size(), result.hypotheses[0].pairs.size());
+}
+
+TEST(Recognizer, RefusesWhatItCannotUse) {
+  MonoScene scene = make_mono_scene(nullptr, {.seed = 1});
+  scene.features.points[4].uv.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(message_of([&] { ask(scene); }), HasSubstr("feature point 4"));
+  scene = make_mono_scene(nullptr, {.seed = 1});
+  scene.features.links.push_back({3, 600});
+  EXPECT_THAT(message_of([&] { ask(scene); }), HasSubstr("600"));
+  scene = make_mono_scene(nullptr, {.seed = 1});
+  scene.camera.width = 320;
+  EXPECT_THAT(message_of([&] { ask(scene); }), HasSubstr("320 x 480"));
+}
+
+TEST(Recognizer, AcceptsAModelOfThreePointsAndNeverFindsItAlone) {
+  auto record = std::make_shared<MonoModelRecord>();
+  record->model.name = "triangle";
+  for (const Eigen::Vector3d& p :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.1, 0, 0), Eigen::Vector3d(0, 0.1, 0)}) {
+    record->model.points.push_back({.xyz = p});
+  }
+  record->model.edges = {{0, 1}, {1, 2}, {0, 2}};
+  record->model.diameter_m = 0.15;
+  auto one = std::make_shared<MonoCatalog>();
+  one->entries.push_back({1, record, {}});
+  const MonoScene scene =
+      make_mono_scene(record.get(), {.seed = 2, .features = 20, .missing = 0.0});
+  EXPECT_EQ(Recognizer(one).recognize(scene.features, scene.camera, {}, {}).status,
+            RecognizeStatus::kNotFound);
+}
+
+TEST(Recognizer, StopsWhenAsked) {
+  const MonoScene scene = make_mono_scene(nullptr, {.seed = 1, .features = 400});
+  RunContext run;
+  run.deadline = std::chrono::steady_clock::now() - std::chrono::seconds(1);
+  EXPECT_THROW(recognizer().recognize(scene.features, scene.camera, {}, run), Error);
+}
+
+// Six by six dots on a plane: a pose that is off by one row still matches thirty of them.
+std::shared_ptr<const MonoModelRecord> dots() {
+  auto record = std::make_shared<MonoModelRecord>();
+  MonoModel& model = record->model;
+  model.name = "dots";
+  for (int y = 0; y < 6; ++y) {
+    for (int x = 0; x < 6; ++x) {
+      const Eigen::Vector3d at(0.034 * x, 0.034 * y, 0.0);
+      model.circles.push_back({at, Eigen::Vector3d::UnitZ(), 0.011});
+      model.points.push_back({.type = FeatureType::kConicCentre,
+                              .xyz = at,
+                              .part = static_cast<std::int32_t>(model.circles.size() - 1)});
+    }
+  }
+  model.diameter_m = 0.24;
+  for (int turn = 0; turn < 4; ++turn) {
+    const Eigen::Vector3d middle(0.085, 0.085, 0.0);
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.linear() = rotation_from_vector({0, 0, turn * std::numbers::pi / 2});
+    T.translation() = middle - T.linear() * middle;
+    Eigen::Isometry3d flip = Eigen::Isometry3d::Identity();
+    flip.linear() = rotation_from_vector({std::numbers::pi, 0, 0});
+    flip.translation() = middle - flip.linear() * middle;
+    model.symmetries.push_back(T.matrix());
+    model.symmetries.push_back((T * flip).matrix());
+  }
+  model.symmetry_class = "d4";
+  return record;
+}
+
+TEST(FindLookalikes, KnowsTheNextPlacesOfAGrid) {
+  const std::vector<Eigen::Isometry3d> found = find_lookalikes(dots()->model, 0.4, 48);
+  bool next = false;
+  for (const Eigen::Isometry3d& T : found) {
+    const Eigen::Vector3d t = T.translation();
+    next =
+        next || (T.linear().isIdentity(1e-6) && (t - Eigen::Vector3d(0.034, 0, 0)).norm() < 1e-6);
+    EXPECT_FALSE(T.isApprox(Eigen::Isometry3d::Identity(), 1e-6));
+  }
+  EXPECT_TRUE(next);
+  EXPECT_TRUE(find_lookalikes(catalog()->entries[0].record->model, 0.4, 48).empty());
+}
+
+TEST(Recognizer, IsNotOffByARowOnAGridOfDots) {
+  const auto record = dots();
+  auto one = std::make_shared<MonoCatalog>();
+  one->entries.push_back({1, record, {}});
+  const Recognizer grid(one);
+  const SearchModel search = prepare_model(record);
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Random random(seed);
+    const RigidPose truth{
+        rotation_from_vector({random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), 0.2}),
+        Eigen::Vector3d(
+            random.uniform(-0.1, 0.0), random.uniform(-0.1, 0.0), random.uniform(0.4, 0.7))};
+    MonoScene scene = make_mono_scene(nullptr, {.seed = seed, .features = 25, .links = false});
+    for (const PosePoint& point : search.points) {
+      if (random.uniform() < 0.08) continue;
+      const SeenRay ray = seen_ray(point, truth);
+      ImageFeature feature;
+      feature.type = FeatureType::kConicCentre;
+      feature.uv = distort(scene.camera, ray.ray) +
+                   Eigen::Vector2d(0.3 * random.normal(), 0.3 * random.normal());
+      scene.features.points.push_back(feature);
+    }
+    const RecognizeResult result = grid.recognize(scene.features, scene.camera, {}, {});
+    if (result.status != RecognizeStatus::kRecognized) continue;
+    ++found;
+    const Eigen::Isometry3d& T = result.hypotheses[0].T_camera_object;
+    EXPECT_TRUE(
+        same_but_for_symmetry(search, truth, {T.linear(), T.translation()}, 3 * kDegree, 0.01))
+        << seed;
+  }
+  EXPECT_GE(found, 10);
+}
+
+}  // namespace
+}  // namespace landmarkdb
