@@ -1,6 +1,7 @@
 #include "engine/mono/answer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -30,7 +31,7 @@ double margin_of(std::span<const Candidate> candidates, std::size_t which) {
   double margin = kNoRival;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (i == which || !contend(candidates[i], candidates[which])) continue;
-    margin = std::min(margin, candidates[i].log10_nfa - candidates[which].log10_nfa);
+    margin = std::min(margin, candidates[i].rank() - candidates[which].rank());
   }
   return margin;
 }
@@ -97,6 +98,8 @@ void write_answer(std::span<const SearchModel> models,
                                 .has_edges = !edges.empty(),
                                 .edge_share = candidate.edge_share,
                                 .margin = hypothesis.margin});
+    // The rival has its part of it: the odds of the two are those of their false alarms.
+    hypothesis.confidence /= 1.0 + std::pow(10.0, -hypothesis.margin);
     if (candidate.ambiguous) {
       MonoHypothesis twin = hypothesis;
       twin.T_camera_object = candidate.twin.isometry();

@@ -16,9 +16,11 @@ constexpr double kLook_px = 8.0;
 constexpr std::array<double, 3> kRounds_px{5.0, 3.5, 3.5};
 constexpr double kFinal_px = 3.5;
 constexpr std::size_t kLeastHits = 5;
-constexpr double kLeastShare = 0.35;    // of the visible points
-constexpr double kHuber = 2.0;          // sigmas
-constexpr double kChanceOfLink = 0.25;  // at most, of two chance matches: see score
+constexpr double kLeastShare = 0.35;        // of the visible points
+constexpr double kHuber = 2.0;              // sigmas
+constexpr double kChanceOfLink = 0.25;      // at most, of two chance matches: see score
+constexpr std::size_t kSearched = 3;        // links that the search itself has asked for
+constexpr double kLeastChanceOfArm = 0.25;  // edges of real scenes share their directions
 constexpr double kDirection_rad = 12.0 * std::numbers::pi / 180.0;
 
 Eigen::Vector2d ideal(const ImageView& image, const Eigen::Vector3d& X) {
@@ -224,18 +226,22 @@ double PoseCheck::score(const Candidate& candidate, std::span<const std::uint16_
     const Eigen::Vector3d here = candidate.pose * search.points[match.model].xyz;
     for (const std::uint32_t other : search.neighbours[match.model]) {
       const int image = image_of[other];
+      const bool joined = image >= 0 && image_.linked(match.image, static_cast<std::size_t>(image));
       if (image >= 0 && other > match.model) {
         ++edges;
-        linked += image_.linked(match.image, static_cast<std::size_t>(image)) ? 1 : 0;
+        linked += joined ? 1 : 0;
       }
+      if (joined) continue;  // a link lies along the edge: its direction says nothing new
       if (at.directions.empty()) continue;
       const Eigen::Vector3d there = candidate.pose * search.points[other].xyz;
       if (!(there.z() > 0.0)) continue;
       const Eigen::Vector2d d = ideal(image_, there) - ideal(image_, here);
       const double direction = std::atan2(d.y(), d.x());
       ++arms;
-      chance_of_arm += std::min(
-          0.9, static_cast<double>(at.directions.size()) * kDirection_rad / std::numbers::pi);
+      chance_of_arm +=
+          std::clamp(static_cast<double>(at.directions.size()) * kDirection_rad / std::numbers::pi,
+                     kLeastChanceOfArm,
+                     0.9);
       fitting += std::any_of(at.directions.begin(),
                              at.directions.end(),
                              [&](double seen_direction) {
@@ -245,30 +251,20 @@ double PoseCheck::score(const Candidate& candidate, std::span<const std::uint16_
                      : 0;
     }
   }
-  if (image_.link_count() > 0 && edges > 2) {
+  if (image_.link_count() > 0 && edges > kSearched) {
     // A point is linked to as many others as on the mean, out of the eight around it.
     const double degree =
         2.0 * static_cast<double>(image_.link_count()) / static_cast<double>(image_.size());
     const double q = std::clamp(degree / 8.0, 0.02, kChanceOfLink);
-    log10_nfa += log10_binomial_tail(edges - 2, linked > 2 ? linked - 2 : 0, q);
+    log10_nfa +=
+        log10_binomial_tail(edges - kSearched, linked > kSearched ? linked - kSearched : 0, q);
   }
-  if (arms > 2) {
-    log10_nfa += log10_binomial_tail(
-        arms - 2, fitting > 2 ? fitting - 2 : 0, chance_of_arm / static_cast<double>(arms));
+  if (arms > kSearched) {
+    log10_nfa += log10_binomial_tail(arms - kSearched,
+                                     fitting > kSearched ? fitting - kSearched : 0,
+                                     chance_of_arm / static_cast<double>(arms));
   }
   return log10_nfa;
-}
-
-double PoseCheck::score_edges(std::span<const EdgeSample> samples, double share) const {
-  if (samples.size() < 8) return 0.0;
-  // Samples of one straight edge come and go together: one in eight counts as a trial of its own.
-  constexpr std::size_t kTogether = 8;
-  constexpr double kBand_px = 4.0, kTurn = 40.0 / 180.0;  // 2 px and 20 degrees, either way
-  // Edge points come in lines: in a band across them there is one for each pixel of its length.
-  const double p = std::clamp(edges_.density() * kBand_px * 3.0 * kTurn, 0.02, 0.9);
-  const std::size_t trials = samples.size() / kTogether;
-  const std::size_t hits = static_cast<std::size_t>(share * static_cast<double>(trials));
-  return log10_binomial_tail(trials, hits, p);
 }
 
 void PoseCheck::settle_on_edges(Candidate& candidate) const {
@@ -328,7 +324,6 @@ void PoseCheck::settle_on_edges(Candidate& candidate) const {
     }
     candidate.rms_px = std::sqrt(sum / static_cast<double>(candidate.matches.size()));
   }
-  candidate.log10_nfa += score_edges(samples, candidate.edge_share);
 }
 
 void PoseCheck::take(const Candidate& candidate) {

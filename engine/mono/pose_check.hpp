@@ -31,12 +31,16 @@ struct Candidate {
   std::vector<Match> matches{};
   std::size_t visible = 0;
   double rms_px = 0.0;
-  double log10_nfa = 0.0;  // of points, links, directions and edges together
+  double log10_nfa = 0.0;  // of points, links and directions together
   double edge_share = 0.0;
   bool ambiguous = false;  // `twin`, the other tilt of a plane, fits about as well
   RigidPose twin{};
   double twin_odds = 0.0;  // of the twin against the pose
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+
+  // Lower is better: edges decide where the points do not. A refined pose is drawn to whatever
+  // edges there are, so their share is no probability; all of them weigh as much as four decades.
+  double rank() const { return log10_nfa - 4.0 * edge_share; }
 };
 
 struct CheckOptions {
@@ -66,7 +70,7 @@ class PoseCheck {
                                   const RigidPose& pose,
                                   std::span<const Match> start);
 
-  // Refinement with the edges of the image too, and their share; the score counts them from there.
+  // Refinement with the edges of the image too, and their share; `rank` counts it from there.
   void settle_on_edges(Candidate& candidate) const;
 
   void take(const Candidate& candidate);
@@ -82,7 +86,6 @@ class PoseCheck {
                       std::size_t need);
   bool refine(std::uint32_t model, RigidPose& pose, Candidate* result) const;
   double score(const Candidate& candidate, std::span<const std::uint16_t> seen) const;
-  double score_edges(std::span<const EdgeSample> samples, double share) const;
 
   std::span<const SearchModel> models_;
   const ImageView& image_;

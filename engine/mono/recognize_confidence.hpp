@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 namespace landmarkdb {
 
 // What an answer's confidence is made of.
@@ -13,8 +16,13 @@ struct RecognitionEvidence {
   double margin = 0.0;  // in log10 of the number of false alarms
 };
 
-// The share of answers with this evidence that are right: a logistic function of the number of
-// false alarms and the margin.
+// The terms whose weighted sum is the log odds of being right; the first is 1.
+inline constexpr std::size_t kConfidenceTerms = 8;
+std::array<double, kConfidenceTerms> confidence_terms(const RecognitionEvidence& evidence);
+
+// The share of answers with this evidence that are right: a logistic function of the terms, with
+// the weights that `landmarkdb-bench-mono calibrate` fits to generated scenes with and without a
+// known object (docs/decisions/0012-monocular-confidence.md).
 double recognition_confidence(const RecognitionEvidence& evidence);
 
 }  // namespace landmarkdb

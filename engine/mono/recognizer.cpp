@@ -24,7 +24,7 @@ namespace {
 // would give a million.
 constexpr std::size_t kMostQuads = 20000;
 // Those with two links only are many and say little: a sample of them.
-constexpr std::size_t kMostPairs = 12000;
+constexpr std::size_t kMostPairs = 6000;
 constexpr double kReach_px = 8.0;  // of the table of nearest features: the quick look's tolerance
 constexpr double kImageWidth_px = 640.0;  // the pixel tolerances are those of such an image
 constexpr std::size_t kFewest = 4;        // points that fix a pose

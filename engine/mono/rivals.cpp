@@ -14,11 +14,10 @@ constexpr std::size_t kSettled = 8;    // candidates that are brought to rest
 constexpr std::size_t kMostKept = 24;  // that are remembered as rivals
 constexpr int kClimbs = 4;             // a grid of six is crossed in as many places, two at a time
 
-void sort_by_nfa(std::vector<Candidate>& candidates, std::size_t most) {
-  std::stable_sort(
-      candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-        return a.log10_nfa < b.log10_nfa;
-      });
+void sort_by_rank(std::vector<Candidate>& candidates, std::size_t most) {
+  std::stable_sort(candidates.begin(),
+                   candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.rank() < b.rank(); });
   if (candidates.size() > most)
     candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(most), candidates.end());
 }
@@ -88,7 +87,7 @@ void settle_rivals(std::span<const SearchModel> models,
                    CandidatePool& pool,
                    const RunContext& run) {
   std::vector<Candidate>& candidates = pool.candidates();
-  sort_by_nfa(candidates, kMostKept);
+  sort_by_rank(candidates, kMostKept);
   for (int climb = 0; climb < kClimbs && !candidates.empty(); ++climb) {
     const double best = candidates.front().log10_nfa;
     const std::size_t count = climb == 0 ? std::min<std::size_t>(3, candidates.size()) : 1;
@@ -98,7 +97,7 @@ void settle_rivals(std::span<const SearchModel> models,
       run.check("refine");
       try_lookalikes(models, candidate, check, pool);
     }
-    sort_by_nfa(candidates, kMostKept);
+    sort_by_rank(candidates, kMostKept);
     if (climb > 0 && !(candidates.front().log10_nfa < best)) break;
   }
   for (std::size_t i = 0; i < std::min(kSettled, candidates.size()); ++i) {
@@ -106,7 +105,7 @@ void settle_rivals(std::span<const SearchModel> models,
     settle_twins(models, image, camera, candidates[i]);
     check.settle_on_edges(candidates[i]);
   }
-  sort_by_nfa(candidates, kMostKept);
+  sort_by_rank(candidates, kMostKept);
 }
 
 }  // namespace landmarkdb
