@@ -15,7 +15,7 @@ constexpr double kNoRival = 10.0;       // margin where nothing else came up
 constexpr double kWorthTelling = 0.05;  // confidence of a further hypothesis
 
 // Whether two candidates want the same image points: a quarter of the smaller one's.
-bool contend(const Candidate& a, const Candidate& b) {
+bool contend(const MonoCandidate& a, const MonoCandidate& b) {
   std::size_t shared = 0;
   for (const Match& match : a.matches) {
     shared += std::any_of(b.matches.begin(),
@@ -27,7 +27,7 @@ bool contend(const Candidate& a, const Candidate& b) {
   return 4 * shared >= std::min(a.matches.size(), b.matches.size());
 }
 
-double margin_of(std::span<const Candidate> candidates, std::size_t which) {
+double margin_of(std::span<const MonoCandidate> candidates, std::size_t which) {
   double margin = kNoRival;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (i == which || !contend(candidates[i], candidates[which])) continue;
@@ -36,7 +36,9 @@ double margin_of(std::span<const Candidate> candidates, std::size_t which) {
   return margin;
 }
 
-MonoHypothesis told(const SearchModel& search, const ImageView& image, const Candidate& candidate) {
+MonoHypothesis told(const SearchModel& search,
+                    const ImageView& image,
+                    const MonoCandidate& candidate) {
   MonoHypothesis hypothesis;
   hypothesis.model = search.model().name;
   hypothesis.T_camera_object = candidate.pose.isometry();
@@ -81,13 +83,13 @@ std::string why_not(std::span<const MonoHypothesis> hypotheses, double min_confi
 void write_answer(std::span<const SearchModel> models,
                   const ImageView& image,
                   const EdgeGrid& edges,
-                  std::span<const Candidate> candidates,
+                  std::span<const MonoCandidate> candidates,
                   const RecognizeOptions& options,
                   double scale,
                   RecognizeResult& result) {
   std::vector<MonoHypothesis> hypotheses;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& candidate = candidates[i];
+    const MonoCandidate& candidate = candidates[i];
     MonoHypothesis hypothesis = told(models[candidate.model], image, candidate);
     hypothesis.margin = margin_of(candidates, i);
     hypothesis.confidence =

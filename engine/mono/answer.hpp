@@ -14,7 +14,7 @@ namespace landmarkdb {
 void write_answer(std::span<const SearchModel> models,
                   const ImageView& image,
                   const EdgeGrid& edges,
-                  std::span<const Candidate> candidates,
+                  std::span<const MonoCandidate> candidates,
                   const RecognizeOptions& options,
                   double scale,
                   RecognizeResult& result);

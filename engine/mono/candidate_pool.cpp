@@ -15,7 +15,7 @@ constexpr double kSameDistance = 0.05;   // of the depth
 }  // namespace
 
 bool CandidatePool::is_known(std::uint32_t model, const RigidPose& pose) const {
-  for (const Candidate& known : candidates_) {
+  for (const MonoCandidate& known : candidates_) {
     if (known.model == model && same_but_for_symmetry(models_[model],
                                                       known.pose,
                                                       pose,
@@ -32,12 +32,12 @@ void CandidatePool::try_pose(std::uint32_t model, const RigidPose& pose) {
   if (matches.empty() || settled_ >= kMostSettled || is_known(model, pose)) return;
   const std::vector<Match> start(matches.begin(), matches.end());
   ++settled_;
-  std::optional<Candidate> candidate = check_.settle(model, pose, start);
+  std::optional<MonoCandidate> candidate = check_.settle(model, pose, start);
   if (candidate) add(std::move(*candidate));
 }
 
-void CandidatePool::add(Candidate candidate) {
-  for (Candidate& known : candidates_) {
+void CandidatePool::add(MonoCandidate candidate) {
+  for (MonoCandidate& known : candidates_) {
     if (known.model != candidate.model ||
         !same_but_for_symmetry(models_[known.model],
                                known.pose,

@@ -20,17 +20,17 @@ class CandidatePool {
   // Looks at a pose and, where it passes and is new, settles and keeps it.
   void try_pose(std::uint32_t model, const RigidPose& pose);
 
-  void add(Candidate candidate);
+  void add(MonoCandidate candidate);
   bool beyond_doubt() const { return best_ < kBeyondDoubt; }
   std::size_t settled() const { return settled_; }
-  std::vector<Candidate>& candidates() { return candidates_; }
+  std::vector<MonoCandidate>& candidates() { return candidates_; }
 
  private:
   bool is_known(std::uint32_t model, const RigidPose& pose) const;
 
   std::span<const SearchModel> models_;
   PoseCheck& check_;
-  std::vector<Candidate> candidates_;
+  std::vector<MonoCandidate> candidates_;
   double best_ = 1e9;
   std::size_t settled_ = 0;
 };

@@ -122,7 +122,7 @@ std::span<const Match> PoseCheck::look(std::uint32_t model, const RigidPose& pos
   return matches_;
 }
 
-bool PoseCheck::refine(std::uint32_t model, RigidPose& pose, Candidate* result) const {
+bool PoseCheck::refine(std::uint32_t model, RigidPose& pose, MonoCandidate* result) const {
   std::vector<PosePoint> points;
   points.reserve(matches_.size());
   for (const Match& match : matches_) {
@@ -141,12 +141,12 @@ bool PoseCheck::refine(std::uint32_t model, RigidPose& pose, Candidate* result) 
   return pose.t.allFinite();
 }
 
-std::optional<Candidate> PoseCheck::settle(std::uint32_t model,
-                                           const RigidPose& start,
-                                           std::span<const Match> first) {
+std::optional<MonoCandidate> PoseCheck::settle(std::uint32_t model,
+                                               const RigidPose& start,
+                                               std::span<const Match> first) {
   const SearchModel& search = models_[model];
   matches_.assign(first.begin(), first.end());
-  Candidate candidate;
+  MonoCandidate candidate;
   candidate.model = model;
   candidate.pose = start;
   std::vector<std::uint16_t> seen;
@@ -188,7 +188,7 @@ std::optional<Candidate> PoseCheck::settle(std::uint32_t model,
 // probability that a disc of the tolerance holds one of their type. Links: an edge between two
 // matched points has its link in the image, which the quads of the search ask for twice.
 // Directions: an image vertex' edges lie along the model's.
-double PoseCheck::score(const Candidate& candidate, std::span<const std::uint16_t> seen) const {
+double PoseCheck::score(const MonoCandidate& candidate, std::span<const std::uint16_t> seen) const {
   const SearchModel& search = models_[candidate.model];
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
   std::array<double, kFeatureTypes> of_type{};
@@ -267,7 +267,7 @@ double PoseCheck::score(const Candidate& candidate, std::span<const std::uint16_
   return log10_nfa;
 }
 
-void PoseCheck::settle_on_edges(Candidate& candidate) const {
+void PoseCheck::settle_on_edges(MonoCandidate& candidate) const {
   if (edges_.empty()) return;
   constexpr double kStep_px = 6.0;
   constexpr std::size_t kMostSamples = 600;
@@ -326,7 +326,7 @@ void PoseCheck::settle_on_edges(Candidate& candidate) const {
   }
 }
 
-void PoseCheck::take(const Candidate& candidate) {
+void PoseCheck::take(const MonoCandidate& candidate) {
   for (const Match& match : candidate.matches) taken_[match.image] = 1;
 }
 

@@ -25,7 +25,7 @@ struct Match {
 };
 
 // One model at one pose with what speaks for it.
-struct Candidate {
+struct MonoCandidate {
   std::uint32_t model = 0;  // index into the search models
   RigidPose pose;
   std::vector<Match> matches{};
@@ -66,14 +66,14 @@ class PoseCheck {
 
   // Refines a pose that passed the quick look, counting again at 5 and 3.5 px, and says what speaks
   // for it. nullopt where too little is left.
-  std::optional<Candidate> settle(std::uint32_t model,
-                                  const RigidPose& pose,
-                                  std::span<const Match> start);
+  std::optional<MonoCandidate> settle(std::uint32_t model,
+                                      const RigidPose& pose,
+                                      std::span<const Match> start);
 
   // Refinement with the edges of the image too, and their share; `rank` counts it from there.
-  void settle_on_edges(Candidate& candidate) const;
+  void settle_on_edges(MonoCandidate& candidate) const;
 
-  void take(const Candidate& candidate);
+  void take(const MonoCandidate& candidate);
   bool is_taken(std::size_t image_point) const { return taken_[image_point] != 0; }
 
   std::size_t looks() const { return looks_; }
@@ -84,8 +84,8 @@ class PoseCheck {
                       std::span<const std::uint16_t> seen,
                       double reach_px,
                       std::size_t need);
-  bool refine(std::uint32_t model, RigidPose& pose, Candidate* result) const;
-  double score(const Candidate& candidate, std::span<const std::uint16_t> seen) const;
+  bool refine(std::uint32_t model, RigidPose& pose, MonoCandidate* result) const;
+  double score(const MonoCandidate& candidate, std::span<const std::uint16_t> seen) const;
 
   std::span<const SearchModel> models_;
   const ImageView& image_;

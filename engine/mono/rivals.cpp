@@ -14,17 +14,18 @@ constexpr std::size_t kSettled = 8;    // candidates that are brought to rest
 constexpr std::size_t kMostKept = 24;  // that are remembered as rivals
 constexpr int kClimbs = 4;             // a grid of six is crossed in as many places, two at a time
 
-void sort_by_rank(std::vector<Candidate>& candidates, std::size_t most) {
-  std::stable_sort(candidates.begin(),
-                   candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.rank() < b.rank(); });
+void sort_by_rank(std::vector<MonoCandidate>& candidates, std::size_t most) {
+  std::stable_sort(
+      candidates.begin(), candidates.end(), [](const MonoCandidate& a, const MonoCandidate& b) {
+        return a.rank() < b.rank();
+      });
   if (candidates.size() > most)
     candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(most), candidates.end());
 }
 
 // Tries the poses that carry a model's lookalike onto this one.
 void try_lookalikes(std::span<const SearchModel> models,
-                    const Candidate& from,
+                    const MonoCandidate& from,
                     PoseCheck& check,
                     CandidatePool& pool) {
   const std::uint32_t model = from.model;
@@ -34,7 +35,7 @@ void try_lookalikes(std::span<const SearchModel> models,
     const std::span<const Match> matches = check.look(model, moved);
     if (matches.empty()) continue;
     const std::vector<Match> start(matches.begin(), matches.end());
-    std::optional<Candidate> candidate = check.settle(model, moved, start);
+    std::optional<MonoCandidate> candidate = check.settle(model, moved, start);
     if (candidate) pool.add(std::move(*candidate));
   }
 }
@@ -44,7 +45,7 @@ void try_lookalikes(std::span<const SearchModel> models,
 void settle_twins(std::span<const SearchModel> models,
                   const ImageView& image,
                   const Camera& camera,
-                  Candidate& candidate) {
+                  MonoCandidate& candidate) {
   std::vector<PosePoint> points;
   double sigma_px = 0.0;
   for (const Match& match : candidate.matches) {
@@ -86,14 +87,14 @@ void settle_rivals(std::span<const SearchModel> models,
                    PoseCheck& check,
                    CandidatePool& pool,
                    const RunContext& run) {
-  std::vector<Candidate>& candidates = pool.candidates();
+  std::vector<MonoCandidate>& candidates = pool.candidates();
   sort_by_rank(candidates, kMostKept);
   for (int climb = 0; climb < kClimbs && !candidates.empty(); ++climb) {
     const double best = candidates.front().log10_nfa;
     const std::size_t count = climb == 0 ? std::min<std::size_t>(3, candidates.size()) : 1;
-    const std::vector<Candidate> from(candidates.begin(),
-                                      candidates.begin() + static_cast<std::ptrdiff_t>(count));
-    for (const Candidate& candidate : from) {
+    const std::vector<MonoCandidate> from(candidates.begin(),
+                                          candidates.begin() + static_cast<std::ptrdiff_t>(count));
+    for (const MonoCandidate& candidate : from) {
       run.check("refine");
       try_lookalikes(models, candidate, check, pool);
     }
