@@ -74,6 +74,8 @@ struct Stats {
   std::uint64_t queries_localized = 0, queries_ambiguous = 0, queries_not_found = 0;
   std::uint64_t in_flight = 0, queued = 0, rejected_total = 0, threads = 0;
   double query_ms_mean = 0.0, query_ms_max = 0.0;
+  std::uint64_t models = 0, recognized = 0, recognize_not_found = 0;
+  double recognize_ms_mean = 0.0, recognize_ms_max = 0.0;
   std::uint64_t resident_bytes = 0, database_bytes = 0, reloads_total = 0;
 };
 

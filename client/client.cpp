@@ -5,6 +5,7 @@
 
 #include "client/connection.hpp"
 #include "client/convert.hpp"
+#include "client/convert_recognition.hpp"
 #include "engine/base/error.hpp"
 
 namespace landmarkdb::client {
@@ -59,6 +60,14 @@ struct Client::State {
         call(std::move(request), v1::Envelope::kSceneReply, context).scene_reply().scene());
   }
 
+  ModelInfo call_for_model(v1::Envelope request, const RunContext& context) {
+    const v1::Envelope reply = call(std::move(request), v1::Envelope::kModelReply, context);
+    ModelInfo model = from_proto(reply.model_reply().model());
+    model.json = reply.model_reply().json();
+    model.replaced = reply.model_reply().replaced();
+    return model;
+  }
+
   Connection connection;
   ServerInfo info;
 };
@@ -80,6 +89,54 @@ QueryResult Client::query(const PointCloud& cloud,
   *request.mutable_query()->mutable_options() = to_proto(options);
   return from_proto(
       state_->call(std::move(request), v1::Envelope::kQueryResult, context).query_result());
+}
+
+RecognizeAnswer Client::recognize(const RecognizeInput& input,
+                                  const RecognizeOptions& options,
+                                  const RunContext& context) {
+  v1::Envelope request;
+  *request.mutable_recognize() = to_proto(input, options);
+  return from_proto(
+      state_->call(std::move(request), v1::Envelope::kRecognizeResult, context).recognize_result());
+}
+
+std::vector<ModelInfo> Client::models(const RunContext& context) {
+  v1::Envelope request;
+  request.mutable_model_list();
+  const v1::Envelope reply =
+      state_->call(std::move(request), v1::Envelope::kModelListReply, context);
+  std::vector<ModelInfo> out;
+  for (const v1::ModelInfo& model : reply.model_list_reply().models()) {
+    out.push_back(from_proto(model));
+  }
+  return out;
+}
+
+ModelInfo Client::model(const std::string& name, const RunContext& context) {
+  v1::Envelope request;
+  request.mutable_model_show()->set_name(name);
+  return state_->call_for_model(std::move(request), context);
+}
+
+ModelInfo Client::add_model(const ModelAdd& add, const RunContext& context) {
+  v1::Envelope request;
+  *request.mutable_model_add() = to_proto(add);
+  return state_->call_for_model(std::move(request), context);
+}
+
+void Client::remove_model(const std::string& name, const RunContext& context) {
+  v1::Envelope request;
+  request.mutable_model_remove()->set_name(name);
+  state_->call(std::move(request), v1::Envelope::kModelRemoveReply, context);
+}
+
+ModelInfo Client::rename_model(const std::string& old_name,
+                               const std::string& new_name,
+                               const RunContext& context) {
+  v1::Envelope request;
+  request.mutable_model_rename()->set_old_name(old_name);
+  request.mutable_model_rename()->set_new_name(new_name);
+  return state_->call_for_model(std::move(request), context);
 }
 
 std::vector<SceneInfo> Client::scenes(const RunContext& context) {

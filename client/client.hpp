@@ -6,6 +6,7 @@
 
 #include "client/answers.hpp"
 #include "client/connect_options.hpp"
+#include "client/recognition.hpp"
 #include "engine/base/run_context.hpp"
 #include "engine/types/point_cloud.hpp"
 #include "engine/types/query.hpp"
@@ -35,6 +36,19 @@ class Client {
   QueryResult query(const PointCloud& cloud,
                     const QueryOptions& options,
                     const RunContext& context);
+
+  // Which model is this, and where? "Not found" is an answer.
+  RecognizeAnswer recognize(const RecognizeInput& input,
+                            const RecognizeOptions& options,
+                            const RunContext& context);
+
+  std::vector<ModelInfo> models(const RunContext& context);  // by name
+  ModelInfo model(const std::string& name, const RunContext& context);
+  ModelInfo add_model(const ModelAdd& add, const RunContext& context);
+  void remove_model(const std::string& name, const RunContext& context);
+  ModelInfo rename_model(const std::string& old_name,
+                         const std::string& new_name,
+                         const RunContext& context);
 
   std::vector<SceneInfo> scenes(const RunContext& context);  // by name
   SceneInfo scene(const std::string& name, const RunContext& context);

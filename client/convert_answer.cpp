@@ -209,6 +209,11 @@ Stats from_proto(const v1::StatsReply& stats) {
           .threads = stats.threads(),
           .query_ms_mean = stats.query_ms_mean(),
           .query_ms_max = stats.query_ms_max(),
+          .models = stats.models(),
+          .recognized = stats.recognized(),
+          .recognize_not_found = stats.recognize_not_found(),
+          .recognize_ms_mean = stats.recognize_ms_mean(),
+          .recognize_ms_max = stats.recognize_ms_max(),
           .resident_bytes = stats.resident_bytes(),
           .database_bytes = stats.database_bytes(),
           .reloads_total = stats.reloads_total()};

@@ -11,12 +11,16 @@ int main(int argc, char** argv) {
   cli::set_up_program(
       app,
       "landmarkdb",
-      "Ask a landmarkdb server where a point cloud was taken, and manage its scenes.",
+      "Ask a landmarkdb server where a point cloud was taken or which model an image shows, and "
+      "manage its scenes and models.",
       {{"landmarkdb query view.ply", "where is this?"},
+       {"landmarkdb recognize image.png --camera cam.json", "which model is this, and where?"},
        {"landmarkdb --server unix:/run/landmarkdb.sock scene list", "what is stored"}});
   client::add_global_options(app, program.options);
   client::add_query_command(app, program);
+  client::add_recognize_command(app, program);
   client::add_scene_commands(app, program);
+  client::add_model_commands(app, program);
   client::add_server_commands(app, program);
   app.require_subcommand(1);
   return cli::run_main(argc, argv, app, [&program] { return program.action(); });

@@ -44,6 +44,11 @@ Json stats_json(const Stats& s) {
           {"threads", s.threads},
           {"query_ms_mean", s.query_ms_mean},
           {"query_ms_max", s.query_ms_max},
+          {"models", s.models},
+          {"recognized", s.recognized},
+          {"recognize_not_found", s.recognize_not_found},
+          {"recognize_ms_mean", s.recognize_ms_mean},
+          {"recognize_ms_max", s.recognize_ms_max},
           {"resident_bytes", s.resident_bytes},
           {"database_bytes", s.database_bytes},
           {"reloads_total", s.reloads_total}};
@@ -67,6 +72,10 @@ std::string stats_text(const Stats& s) {
            cli::count_text(s.queries_not_found) + " not found");
   line("query time",
        "mean " + rounded(s.query_ms_mean, "ms") + ", longest " + rounded(s.query_ms_max, "ms"));
+  line("images",
+       cli::count_text(s.recognized) + " recognized, " + cli::count_text(s.recognize_not_found) +
+           " not found, by " + cli::count_text(s.models) + " models; mean " +
+           rounded(s.recognize_ms_mean, "ms") + ", longest " + rounded(s.recognize_ms_max, "ms"));
   line("requests",
        cli::count_text(s.requests_total) + ", of these " + cli::count_text(s.errors_total) +
            " failed; " + cli::count_text(s.rejected_total) + " turned away, " +

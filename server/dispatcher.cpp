@@ -36,6 +36,20 @@ void add_query_fields(const v1::QueryResult& result, std::vector<LogField>& fiel
   fields.push_back({"verify_ms", t.verify_ms()});
 }
 
+void add_recognize_fields(const v1::RecognizeResult& result, std::vector<LogField>& fields) {
+  const std::string status = v1::RecognizeStatus_Name(result.status());
+  fields.push_back({"verdict", status.substr(std::string("RECOGNIZE_STATUS_").size())});
+  if (!result.hypotheses().empty()) {
+    fields.push_back({"model", result.hypotheses(0).model()});
+    fields.push_back({"confidence", result.hypotheses(0).confidence()});
+  }
+  fields.push_back({"image_points", result.image_points()});
+  fields.push_back({"features_ms", result.timing().features_ms()});
+  fields.push_back({"lookup_ms", result.timing().lookup_ms()});
+  fields.push_back({"verify_ms", result.timing().verify_ms()});
+  fields.push_back({"refine_ms", result.timing().refine_ms()});
+}
+
 }  // namespace
 
 void Dispatcher::submit(const std::shared_ptr<Job>& job, Answer answer) {
@@ -113,6 +127,8 @@ void Dispatcher::log_outcome(const Job& job,
     fields.push_back({"reason", reply.error().message()});
   } else if (reply.has_query_result()) {
     add_query_fields(reply.query_result(), fields);
+  } else if (reply.has_recognize_result()) {
+    add_recognize_fields(reply.recognize_result(), fields);
   }
   log_.write(LogLevel::kInfo, request_name(job.request), fields);
 }

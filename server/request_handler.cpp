@@ -11,6 +11,7 @@
 #include "engine/base/error.hpp"
 #include "server/convert_query.hpp"
 #include "server/process_memory.hpp"
+#include "server/recognition.hpp"
 #include "store/store.hpp"
 
 namespace landmarkdb {
@@ -47,6 +48,9 @@ Lane lane_of(const v1::Envelope& request) {
     case v1::Envelope::kQuery:
     case v1::Envelope::kSceneList:
     case v1::Envelope::kSceneShow:
+    case v1::Envelope::kRecognize:
+    case v1::Envelope::kModelList:
+    case v1::Envelope::kModelShow:
       return Lane::kCompute;
     case v1::Envelope::kSceneAdd:
     case v1::Envelope::kSceneRemove:
@@ -55,6 +59,9 @@ Lane lane_of(const v1::Envelope& request) {
     case v1::Envelope::kSceneTag:
     case v1::Envelope::kLandmarkAdd:
     case v1::Envelope::kLandmarkRemove:
+    case v1::Envelope::kModelAdd:
+    case v1::Envelope::kModelRemove:
+    case v1::Envelope::kModelRename:
     case v1::Envelope::kReload:
       return Lane::kWrite;
     default:
@@ -140,6 +147,24 @@ void RequestHandler::dispatch(const v1::Envelope& request,
     case v1::Envelope::kLandmarkRemove:
       *reply.mutable_scene_reply() = admin_.remove_landmark(request.landmark_remove());
       break;
+    case v1::Envelope::kRecognize:
+      *reply.mutable_recognize_result() = recognize(request.recognize(), context);
+      break;
+    case v1::Envelope::kModelList:
+      *reply.mutable_model_list_reply() = model_admin_.list();
+      break;
+    case v1::Envelope::kModelShow:
+      *reply.mutable_model_reply() = model_admin_.show(request.model_show().name());
+      break;
+    case v1::Envelope::kModelAdd:
+      *reply.mutable_model_reply() = model_admin_.add(request.model_add(), context);
+      break;
+    case v1::Envelope::kModelRemove:
+      *reply.mutable_model_remove_reply() = model_admin_.remove(request.model_remove());
+      break;
+    case v1::Envelope::kModelRename:
+      *reply.mutable_model_reply() = model_admin_.rename(request.model_rename());
+      break;
     case v1::Envelope::kStats:
       *reply.mutable_stats_reply() = stats();
       break;
@@ -185,6 +210,22 @@ v1::QueryResult RequestHandler::query(const v1::QueryRequest& request, const Run
   return reply;
 }
 
+v1::RecognizeResult RequestHandler::recognize(const v1::RecognizeRequest& request,
+                                              const RunContext& context) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::shared_ptr<const Served> served = state_.served();
+  v1::RecognizeResult reply = landmarkdb::recognize(request, *served, memory_, context);
+  reply.set_generation(served->generation);
+  ++(reply.status() == v1::RECOGNIZE_STATUS_RECOGNIZED ? counters_.recognized
+                                                       : counters_.recognize_not_found);
+  const auto us = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
+                                                 std::chrono::steady_clock::now() - start)
+                                                 .count());
+  counters_.recognize_us_total += us;
+  raise_to(counters_.recognize_us_max, us);
+  return reply;
+}
+
 v1::StatsReply RequestHandler::stats() const {
   v1::StatsReply reply;
   reply.set_server_version(std::string(cli::program_version()));
@@ -193,9 +234,10 @@ v1::StatsReply RequestHandler::stats() const {
   if (const std::shared_ptr<const Served> served = state_.served_or_null()) {
     reply.set_generation(served->generation);
     reply.set_scenes(served->scenes);
-    reply.set_quarantined(served->damaged.size());
+    reply.set_quarantined(served->damaged.size() + served->damaged_models.size());
     reply.set_points(served->points);
     reply.set_keypoints(served->keypoints);
+    reply.set_models(served->models->entries.size());
   }
   reply.set_connections(counters_.connections);
   reply.set_connections_total(counters_.connections_total);
@@ -213,6 +255,14 @@ v1::StatsReply RequestHandler::stats() const {
     reply.set_query_ms_mean(static_cast<double>(counters_.query_us_total) / 1000.0 /
                             static_cast<double>(queries));
   }
+  reply.set_recognized(counters_.recognized);
+  reply.set_recognize_not_found(counters_.recognize_not_found);
+  const std::uint64_t recognitions = counters_.recognized + counters_.recognize_not_found;
+  if (recognitions > 0) {
+    reply.set_recognize_ms_mean(static_cast<double>(counters_.recognize_us_total) / 1000.0 /
+                                static_cast<double>(recognitions));
+  }
+  reply.set_recognize_ms_max(static_cast<double>(counters_.recognize_us_max) / 1000.0);
   reply.set_query_ms_max(static_cast<double>(counters_.query_us_max) / 1000.0);
   reply.set_resident_bytes(resident_bytes());
   reply.set_database_bytes(file_bytes(state_.db_path()));
@@ -249,7 +299,7 @@ v1::ReloadReply RequestHandler::reload(const RunContext& context) {
   v1::ReloadReply reply;
   reply.set_generation(served->generation);
   reply.set_scenes(served->scenes);
-  reply.set_quarantined(served->damaged.size());
+  reply.set_quarantined(served->damaged.size() + served->damaged_models.size());
   return reply;
 }
 

@@ -5,6 +5,7 @@
 #include "engine/base/run_context.hpp"
 #include "proto/landmarkdb.pb.h"
 #include "server/memory_budget.hpp"
+#include "server/model_admin.hpp"
 #include "server/options.hpp"
 #include "server/scene_admin.hpp"
 #include "server/server_state.hpp"
@@ -44,7 +45,8 @@ class RequestHandler {
         counters_(counters),
         compute_(compute),
         memory_(memory),
-        admin_(options, state, memory) {}
+        admin_(options, state, memory),
+        model_admin_(options, state) {}
 
   // Never throws. `context` says when to stop and whom to tell of progress.
   v1::Envelope handle(const v1::Envelope& request, const RunContext& context);
@@ -52,6 +54,7 @@ class RequestHandler {
  private:
   void dispatch(const v1::Envelope& request, const RunContext& context, v1::Envelope& reply);
   v1::QueryResult query(const v1::QueryRequest& request, const RunContext& context);
+  v1::RecognizeResult recognize(const v1::RecognizeRequest& request, const RunContext& context);
   v1::StatsReply stats() const;
   v1::HealthReply health() const;
   v1::ReloadReply reload(const RunContext& context);
@@ -62,6 +65,7 @@ class RequestHandler {
   const WorkQueue& compute_;
   MemoryBudget& memory_;
   SceneAdmin admin_;
+  ModelAdmin model_admin_;
 };
 
 }  // namespace landmarkdb

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/retrieval/describe_scene.hpp"
+#include "server/change_database.hpp"
 #include "server/convert_scene.hpp"
 #include "store/names.hpp"
 #include "store/store.hpp"
@@ -40,27 +41,6 @@ void add_bounds(const Served* served, v1::SceneInfo& message) {
 
 }  // namespace
 
-Store SceneAdmin::open_for_change() const {
-  if (options_.read_only) {
-    throw Error(ErrorCode::kPermissionDenied,
-                "this server was started with --read-only: scenes cannot be changed through it");
-  }
-  return Store::open_read_write(state_.db_path());
-}
-
-void SceneAdmin::put_in_service() const {
-  RunContext context;
-  context.stop = state_.stop_token();
-  context.threads = std::max(options_.threads, 1);
-  try {
-    state_.reload(context);
-  } catch (const Error& error) {
-    throw Error(
-        error.code(),
-        std::string("the change is stored, but could not be put in service: ") + error.what());
-  }
-}
-
 v1::SceneListReply SceneAdmin::list() const {
   const std::shared_ptr<const Served> served = state_.served_or_null();
   const Store store = Store::open_read_only(state_.db_path());
@@ -83,56 +63,56 @@ v1::SceneReply SceneAdmin::show(const std::string& name) const {
 
 v1::SceneReply SceneAdmin::add(const v1::SceneAddRequest& request,
                                const RunContext& context) const {
-  Store store = open_for_change();  // refused before an hour is spent on describing
+  Store store = open_for_change(options_, state_);  // refused before an hour is spent on describing
   validate_name(request.name(), "scene name");
   PointAllowance allowance{options_.max_points, &memory_};
   SceneAddition addition = from_proto(request, allowance);
   const SceneRecord record = describe_scene(
       std::move(addition.name), std::move(addition.scans), addition.options, context);
   store.insert(record, context);
-  put_in_service();
+  put_in_service(options_, state_);
   return show(record.name);
 }
 
 v1::SceneRemoveReply SceneAdmin::remove(const v1::SceneRemoveRequest& request) const {
-  open_for_change().remove(request.name());
-  put_in_service();
+  open_for_change(options_, state_).remove(request.name());
+  put_in_service(options_, state_);
   return {};
 }
 
 v1::SceneReply SceneAdmin::rename(const v1::SceneRenameRequest& request) const {
-  open_for_change().rename(request.old_name(), request.new_name());
-  put_in_service();
+  open_for_change(options_, state_).rename(request.old_name(), request.new_name());
+  put_in_service(options_, state_);
   return show(request.new_name());
 }
 
 v1::SceneReply SceneAdmin::rollback(const v1::SceneRollbackRequest& request) const {
-  open_for_change().rollback(request.name());
-  put_in_service();
+  open_for_change(options_, state_).rollback(request.name());
+  put_in_service(options_, state_);
   return show(request.name());
 }
 
 v1::SceneReply SceneAdmin::tag(const v1::SceneTagRequest& request) const {
-  Store store = open_for_change();
+  Store store = open_for_change(options_, state_);
   TagChanges changes;
   for (const auto& [key, value] : request.tags()) {
     changes[key] = value.empty() ? std::nullopt : std::optional<std::string>(value);
   }
   store.change_tags(request.name(), changes);
-  put_in_service();
+  put_in_service(options_, state_);
   return show(request.name());
 }
 
 v1::SceneReply SceneAdmin::add_landmark(const v1::LandmarkAddRequest& request) const {
-  Store store = open_for_change();
+  Store store = open_for_change(options_, state_);
   store.add_landmark(request.scene(), from_proto(request.landmark()));
-  put_in_service();
+  put_in_service(options_, state_);
   return show(request.scene());
 }
 
 v1::SceneReply SceneAdmin::remove_landmark(const v1::LandmarkRemoveRequest& request) const {
-  open_for_change().remove_landmark(request.scene(), request.landmark());
-  put_in_service();
+  open_for_change(options_, state_).remove_landmark(request.scene(), request.landmark());
+  put_in_service(options_, state_);
   return show(request.scene());
 }
 

@@ -28,11 +28,6 @@ class SceneAdmin {
   v1::SceneReply remove_landmark(const v1::LandmarkRemoveRequest& request) const;
 
  private:
-  class Store open_for_change() const;
-  // What was written is on disk, whatever happens to the request now: neither its deadline nor its
-  // Cancel holds for this, only the server's end.
-  void put_in_service() const;
-
   const ServerOptions& options_;
   ServerState& state_;
   MemoryBudget& memory_;

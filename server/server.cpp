@@ -146,11 +146,16 @@ void Server::State::load(bool first) {
         log.write(
             LogLevel::kError, "scene left out", {{"scene", scene.name}, {"reason", scene.what}});
       }
+      for (const DamagedModel& model : served->damaged_models) {
+        log.write(
+            LogLevel::kError, "model left out", {{"model", model.name}, {"reason", model.what}});
+      }
       const std::chrono::duration<double, std::milli> took =
           std::chrono::steady_clock::now() - start;
       log.write(LogLevel::kInfo,
                 "database loaded",
                 {{"scenes", served->scenes},
+                 {"models", served->models->entries.size()},
                  {"generation", served->generation},
                  {"total_ms", took.count()}});
     } catch (const std::exception& error) {

@@ -23,6 +23,35 @@ bool same_content(const Catalog& a, const Catalog& b) {
                     });
 }
 
+bool same_models(const MonoCatalog& a, const MonoCatalog& b) {
+  return std::equal(a.entries.begin(),
+                    a.entries.end(),
+                    b.entries.begin(),
+                    b.entries.end(),
+                    [](const MonoCatalogEntry& x, const MonoCatalogEntry& y) {
+                      return x.model_id == y.model_id && x.record == y.record;
+                    });
+}
+
+// The models; those of `previous`, and its recogniser, where nothing has changed.
+void build_models(const Store& store,
+                  const Served* previous,
+                  const RunContext& context,
+                  Served& served) {
+  std::shared_ptr<const MonoCatalog> models = store.load_models(
+      context,
+      [&](const DamagedModel& model) { served.damaged_models.push_back(model); },
+      previous != nullptr ? previous->models.get() : nullptr);
+  if (previous != nullptr && same_models(*models, *previous->models)) {
+    served.models = previous->models;
+    served.recognizer = previous->recognizer;
+    return;
+  }
+  context.check("models");
+  served.models = models;
+  served.recognizer = std::make_shared<const Recognizer>(std::move(models));
+}
+
 // What is in the database now; `previous` itself when nothing has changed since.
 std::shared_ptr<const Served> build(const std::string& db_path,
                                     const std::shared_ptr<const Served>& previous,
@@ -35,9 +64,12 @@ std::shared_ptr<const Served> build(const std::string& db_path,
         context,
         [&](const DamagedScene& scene) { served->damaged.push_back(scene); },
         previous ? &previous->localizer->catalog() : nullptr);
+    build_models(store, previous.get(), context, *served);
   }
-  if (previous && previous->damaged.empty() && served->damaged.empty() &&
-      same_content(*catalog, previous->localizer->catalog())) {
+  const bool whole = served->damaged.empty() && served->damaged_models.empty();
+  const bool same_scenes = previous && same_content(*catalog, previous->localizer->catalog());
+  if (whole && same_scenes && previous->damaged.empty() && previous->damaged_models.empty() &&
+      served->recognizer == previous->recognizer) {
     return previous;
   }
   served->localizer = std::make_shared<const Localizer>(catalog, context);
@@ -97,6 +129,12 @@ Health ServerState::health() const {
                                 scene.what +
                                 "); see `landmarkdb-indexer check`, then `rollback` or"
                                 " `add` it again");
+    }
+    for (const DamagedModel& model : served_->damaged_models) {
+      health.quarantined.push_back(model.name);
+      health.problems.push_back("model '" + model.name + "' is damaged and not served (" +
+                                model.what +
+                                "); see `landmarkdb-indexer check`, then `repair` or add it again");
     }
     if (!failure_.empty()) {
       health.problems.push_back("the last reload failed, the catalogue before it is served: " +

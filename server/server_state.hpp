@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "engine/base/run_context.hpp"
+#include "engine/mono/recognizer.hpp"
 #include "engine/retrieval/localizer.hpp"
+#include "store/model_types.hpp"
 #include "store/store_types.hpp"
 
 namespace landmarkdb {
@@ -18,7 +20,10 @@ namespace landmarkdb {
 // One catalogue in service. Never changes; queries in flight keep theirs across a reload.
 struct Served {
   std::shared_ptr<const Localizer> localizer;
-  std::vector<DamagedScene> damaged;  // left out, in quarantine
+  std::shared_ptr<const MonoCatalog> models;
+  std::shared_ptr<const Recognizer> recognizer;  // of these models
+  std::vector<DamagedScene> damaged;             // left out, in quarantine
+  std::vector<DamagedModel> damaged_models;      // the same
   std::uint64_t generation = 0;
   std::uint64_t scenes = 0, points = 0, keypoints = 0;
 };
@@ -28,7 +33,7 @@ enum class Phase { kStarting, kServing, kFailed, kStopping };
 struct Health {
   Phase phase = Phase::kStarting;
   std::vector<std::string> problems;
-  std::vector<std::string> quarantined;  // scene names
+  std::vector<std::string> quarantined;  // names of scenes and models
 };
 
 // What all connections share about the database: the catalogue in service and how it is doing.
@@ -72,6 +77,8 @@ struct Counters {
   std::atomic<std::uint64_t> in_flight{0};
   std::atomic<std::uint64_t> localized{0}, ambiguous{0}, not_found{0};
   std::atomic<std::uint64_t> query_us_total{0}, query_us_max{0};
+  std::atomic<std::uint64_t> recognized{0}, recognize_not_found{0};
+  std::atomic<std::uint64_t> recognize_us_total{0}, recognize_us_max{0};
   std::atomic<std::uint64_t> reloads_total{0};
 };
 

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "client/recognition.hpp"
+#include "proto/landmarkdb.pb.h"
+
+namespace landmarkdb::client {
+
+v1::RecognizeRequest to_proto(const RecognizeInput& input, const RecognizeOptions& options);
+v1::ModelAddRequest to_proto(const ModelAdd& add);
+
+// Throw Error{kInternal} where the server's answer is not what the protocol promises.
+RecognizeAnswer from_proto(const v1::RecognizeResult& result);
+ModelInfo from_proto(const v1::ModelInfo& model);
+
+}  // namespace landmarkdb::client

@@ -1,0 +1,234 @@
+#include "client/render_recognition.hpp"
+
+#include <cstdio>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "cli/table.hpp"
+#include "engine/geometry/pose.hpp"
+
+namespace landmarkdb::client {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename... Values>
+std::string formatted(const char* format, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+Json vector_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+// About z, y, x, in degrees.
+Eigen::Vector3d euler_zyx_deg(const Eigen::Matrix3d& R) {
+  return roll_pitch_yaw_rad(R).reverse() * (180.0 / std::numbers::pi);
+}
+
+Json rotation_json(const Eigen::Matrix3d& R) {
+  Eigen::Quaterniond q(R);
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();  // one of the two that mean the same
+  return Json::array({q.x(), q.y(), q.z(), q.w()});
+}
+
+Json hypothesis_json(const MonoHypothesis& h, std::size_t image_points) {
+  const Eigen::Matrix3d R = h.T_camera_object.linear();
+  Json out;
+  out["model"] = h.model;
+  out["confidence"] = h.confidence;
+  out["T_camera_object"] = to_row_major(h.T_camera_object.matrix());
+  out["euler_zyx_deg"] = vector_json(euler_zyx_deg(R));
+  out["translation_m"] = vector_json(h.T_camera_object.translation());
+  out["matched"] = h.pairs.size();
+  out["model_points"] = h.model_points;
+  out["image_points"] = image_points;
+  out["rms_px"] = h.rms_px;
+  out["symmetry"] = h.symmetry;
+  out["pairs"] = Json::array();
+  for (const MonoPair& pair : h.pairs) {
+    out["pairs"].push_back(
+        {{"model", pair.model}, {"image", pair.image}, {"residual_px", pair.residual_px}});
+  }
+  out["rotation_xyzw"] = rotation_json(R);
+  Json covariance = Json::array();
+  for (int i = 0; i < 36; ++i) covariance.push_back(h.covariance(i / 6, i % 6));
+  out["covariance"] = std::move(covariance);
+  out["visible_points"] = h.visible_points;
+  out["ambiguous"] = h.ambiguous;
+  out["log10_nfa"] = h.log10_nfa;
+  out["edge_share"] = h.edge_share;
+  out["margin"] = h.margin;
+  return out;
+}
+
+std::string hypothesis_text(const MonoHypothesis& h) {
+  const Eigen::Vector3d t = h.T_camera_object.translation();
+  const Eigen::Vector3d angles = euler_zyx_deg(h.T_camera_object.linear());
+  std::string text =
+      "  pose        " + formatted("x %.4f  y %.4f  z %.4f m   about z %.2f  y %.2f  x %.2f deg\n",
+                                   t.x(),
+                                   t.y(),
+                                   t.z(),
+                                   angles.x(),
+                                   angles.y(),
+                                   angles.z());
+  text += "  matched     " + formatted("%zu of %zu visible points (%zu in all), rms %.2f px\n",
+                                       h.pairs.size(),
+                                       h.visible_points,
+                                       h.model_points,
+                                       h.rms_px);
+  text += "  evidence    " + formatted("log10 false alarms %.1f, edges %.2f, margin %.2f\n",
+                                       h.log10_nfa,
+                                       h.edge_share,
+                                       h.margin);
+  if (h.symmetry != "none") {
+    text += "  symmetry    " + cli::printable(h.symmetry) +
+            ": poses that differ by it are this same answer\n";
+  }
+  if (h.ambiguous) {
+    text += "  ambiguous   a second pose explains the points about as well\n";
+  }
+  return text;
+}
+
+std::size_t points_of(const ModelInfo& model) {
+  std::size_t count = 0;
+  for (const std::size_t of_type : model.points_of_type) count += of_type;
+  return count;
+}
+
+}  // namespace
+
+Json recognition_json(const RecognizeResult& result) {
+  Json out;
+  const bool found = result.status == RecognizeStatus::kRecognized;
+  out["status"] = found ? "recognized" : "not_found";
+  if (!found) out["reason"] = result.reason;
+  out["hypotheses"] = Json::array();
+  for (const MonoHypothesis& hypothesis : result.hypotheses) {
+    out["hypotheses"].push_back(hypothesis_json(hypothesis, result.image_points));
+  }
+  out["image_points"] = result.image_points;
+  out["warnings"] = result.warnings;
+  const RecognizeTimings& t = result.timings;
+  out["timing_ms"] = {{"features", t.features.count()},
+                      {"lookup", t.lookup.count()},
+                      {"verify", t.verify.count()},
+                      {"refine", t.refine.count()},
+                      {"total", t.total.count()}};
+  return out;
+}
+
+std::string recognition_text(const RecognizeResult& result) {
+  std::string text;
+  if (result.status == RecognizeStatus::kNotFound) {
+    text = "not found: " + cli::printable(result.reason) + "\n";
+  }
+  for (std::size_t i = 0; i < result.hypotheses.size(); ++i) {
+    const MonoHypothesis& h = result.hypotheses[i];
+    const bool first = i == 0 && result.status == RecognizeStatus::kRecognized;
+    text += (first ? "recognized: model " : "also: model ") + cli::printable(h.model) +
+            formatted(", confidence %.2f\n", h.confidence) + hypothesis_text(h);
+  }
+  text += formatted("  image       %zu feature points, %.1f ms\n",
+                    result.image_points,
+                    result.timings.total.count());
+  for (const std::string& warning : result.warnings) {
+    text += "  warning     " + cli::printable(warning) + "\n";
+  }
+  return text;
+}
+
+int recognize_exit_status(const RecognizeResult& result) {
+  if (result.status == RecognizeStatus::kNotFound || result.hypotheses.empty()) return 3;
+  // Of log10 false alarms: a rival that is less than twice as likely to come about by chance.
+  constexpr double kToldApart = 0.3;
+  const MonoHypothesis& best = result.hypotheses.front();
+  const bool rival = result.hypotheses.size() > 1 && best.margin < kToldApart;
+  return best.ambiguous || rival ? 4 : 0;
+}
+
+Json model_json(const ModelInfo& model) {
+  Json types = {{"vertex", model.points_of_type[0]},
+                {"conic_centre", model.points_of_type[1]},
+                {"centroid", model.points_of_type[2]},
+                {"inflexion", model.points_of_type[3]}};
+  Json out = {{"name", model.name},
+              {"model_id", model.model_id},
+              {"state", model.quarantined.empty() ? "active" : "quarantined"},
+              {"created", model.created},
+              {"source", model.source},
+              {"unit_scale", model.unit_scale},
+              {"points", points_of(model)},
+              {"points_of_type", std::move(types)},
+              {"edges", model.edges},
+              {"faces", model.faces},
+              {"circles", model.circles},
+              {"triples", model.triples},
+              {"symmetry", model.symmetry},
+              {"symmetries", model.symmetries},
+              {"diameter_m", model.diameter_m},
+              {"warnings", model.warnings},
+              {"sha256", model.sha256}};
+  if (!model.quarantined.empty()) out["state_reason"] = model.quarantined;
+  if (!model.json.empty()) out["model"] = Json::parse(model.json, nullptr, false);
+  return out;
+}
+
+Json models_json(const std::vector<ModelInfo>& models) {
+  Json array = Json::array();
+  for (const ModelInfo& model : models) array.push_back(model_json(model));
+  return {{"models", std::move(array)}};
+}
+
+std::string model_text(const ModelInfo& model) {
+  std::string text = cli::printable(model.name) +
+                     formatted(": %zu points, %zu edges, %zu faces, %zu circles, %zu triples, ",
+                               points_of(model),
+                               model.edges,
+                               model.faces,
+                               model.circles,
+                               model.triples) +
+                     "symmetry " + cli::printable(model.symmetry) +
+                     formatted(", %.4g m across\n", model.diameter_m);
+  text +=
+      "from " + cli::printable(model.source) + ", stored " + cli::printable(model.created) + "\n";
+  if (!model.quarantined.empty()) {
+    text += "damaged, not served: " + cli::printable(model.quarantined) + "\n";
+  }
+  for (const std::string& warning : model.warnings) {
+    text += "note: " + cli::printable(warning) + "\n";
+  }
+  return text;
+}
+
+std::string models_text(const std::vector<ModelInfo>& models) {
+  using cli::Align;
+  if (models.empty()) return "no models\n";
+  cli::Table table({{"NAME"},
+                    {"POINTS", Align::kRight},
+                    {"EDGES", Align::kRight},
+                    {"FACES", Align::kRight},
+                    {"CIRCLES", Align::kRight},
+                    {"SYMMETRY"},
+                    {"ACROSS (m)", Align::kRight},
+                    {"CREATED"},
+                    {"STATE"}});
+  for (const ModelInfo& model : models) {
+    table.add({model.name,
+               cli::count_text(points_of(model)),
+               cli::count_text(model.edges),
+               cli::count_text(model.faces),
+               cli::count_text(model.circles),
+               model.symmetry,
+               formatted("%.4g", model.diameter_m),
+               model.created,
+               model.quarantined.empty() ? "active" : "damaged"});
+  }
+  return table.text();
+}
+
+}  // namespace landmarkdb::client

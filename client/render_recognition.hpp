@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "client/recognition.hpp"
+
+namespace landmarkdb::client {
+
+// The answer to `recognize --json`: the documented keys in the documented order. Transforms are 16
+// numbers row by row, lengths metres, angles radians but for `euler_zyx_deg` (about z, then y, then
+// x: R = Rz Ry Rx).
+nlohmann::ordered_json recognition_json(const RecognizeResult& result);
+// The same in a few lines for people.
+std::string recognition_text(const RecognizeResult& result);
+
+// 0 recognized; 4 recognized, but a second pose or model explains the image about as well (the
+// hypothesis says ambiguous, or its margin over the next is nothing); 3 not found.
+int recognize_exit_status(const RecognizeResult& result);
+
+// Models for scripts (the indexer prints the same keys) and for people.
+nlohmann::ordered_json model_json(const ModelInfo& model);  // with the model where it has it
+nlohmann::ordered_json models_json(const std::vector<ModelInfo>& models);  // {"models": [...]}
+std::string model_text(const ModelInfo& model);
+std::string models_text(const std::vector<ModelInfo>& models);
+
+}  // namespace landmarkdb::client
