@@ -46,7 +46,7 @@ MonoHypothesis told(const SearchModel& search,
   hypothesis.model_points = search.points.size();
   hypothesis.visible_points = candidate.visible;
   hypothesis.rms_px = candidate.rms_px;
-  hypothesis.log10_nfa = candidate.log10_nfa;
+  hypothesis.log10_nfa = candidate.rank();
   hypothesis.edge_share = candidate.edge_share;
   hypothesis.symmetry = search.model().symmetry_class;
   hypothesis.ambiguous = candidate.ambiguous;
@@ -93,7 +93,7 @@ void write_answer(std::span<const SearchModel> models,
     MonoHypothesis hypothesis = told(models[candidate.model], image, candidate);
     hypothesis.margin = margin_of(candidates, i);
     hypothesis.confidence =
-        recognition_confidence({.log10_nfa = candidate.log10_nfa,
+        recognition_confidence({.log10_nfa = candidate.rank(),
                                 .matched = static_cast<double>(candidate.matches.size()),
                                 .visible = static_cast<double>(candidate.visible),
                                 .rms_px = candidate.rms_px / scale,

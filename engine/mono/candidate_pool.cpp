@@ -7,7 +7,10 @@
 namespace landmarkdb {
 namespace {
 
-constexpr std::size_t kMostSettled = 600;  // refinements a search: some 10 us each
+// Refinements a search, some 10 us each, shared among the models: one that looks like everything
+// must not leave nothing for the others.
+constexpr std::size_t kMostSettled = 1000;
+constexpr std::size_t kLeastSettled = 20;
 // Two poses of a model are one hypothesis where they are nearer than this.
 constexpr double kSameAngle_rad = 0.17;  // 10 degrees
 constexpr double kSameDistance = 0.05;   // of the depth
@@ -27,12 +30,22 @@ bool CandidatePool::is_known(std::uint32_t model, const RigidPose& pose) const {
   return false;
 }
 
+void CandidatePool::judge(const MonoCandidate& candidate) {
+  const bool sure = check_.has_edges() ? candidate.rank() < kBeyondDoubtWithEdges &&
+                                             candidate.edge_share > kBeyondDoubtShare
+                                       : candidate.log10_nfa < kBeyondDoubt;
+  beyond_doubt_ = beyond_doubt_ || sure;
+}
+
 void CandidatePool::try_pose(std::uint32_t model, const RigidPose& pose) {
-  const std::span<const Match> matches = check_.look(model, pose);
-  if (matches.empty() || settled_ >= kMostSettled || is_known(model, pose)) return;
+  if (settled_[model] >= std::max(kLeastSettled, kMostSettled / models_.size())) return;
+  RigidPose grown = pose;
+  std::span<const Match> matches = check_.look(model, pose);
+  if (matches.empty()) matches = check_.grow(model, grown);
+  if (matches.empty() || is_known(model, grown)) return;
   const std::vector<Match> start(matches.begin(), matches.end());
-  ++settled_;
-  std::optional<MonoCandidate> candidate = check_.settle(model, pose, start);
+  ++settled_[model];
+  std::optional<MonoCandidate> candidate = check_.settle(model, grown, start);
   if (candidate) add(std::move(*candidate));
 }
 
@@ -46,11 +59,11 @@ void CandidatePool::add(MonoCandidate candidate) {
                                kSameDistance * known.pose.t.norm())) {
       continue;
     }
-    if (candidate.log10_nfa < known.log10_nfa) known = std::move(candidate);
-    best_ = std::min(best_, known.log10_nfa);
+    judge(candidate);
+    if (candidate.rank() < known.rank()) known = std::move(candidate);
     return;
   }
-  best_ = std::min(best_, candidate.log10_nfa);
+  judge(candidate);
   candidates_.push_back(std::move(candidate));
 }
 

@@ -9,20 +9,23 @@
 namespace landmarkdb {
 
 // log10 of the number of false alarms below which a hypothesis is beyond doubt: searching ends.
+// Where the image's edges are known they have to agree: corners of real things stand in rows and
+// rectangles, and fall into place by chance more often than points strewn at random.
 inline constexpr double kBeyondDoubt = -4.0;
+inline constexpr double kBeyondDoubtWithEdges = -20.0;
+inline constexpr double kBeyondDoubtShare = 0.85;  // of the visible edges
 
 // The hypotheses of one search that have passed, each model's pose once.
 class CandidatePool {
  public:
   CandidatePool(std::span<const SearchModel> models, PoseCheck& check)
-      : models_(models), check_(check) {}
+      : models_(models), check_(check), settled_(models.size(), 0) {}
 
   // Looks at a pose and, where it passes and is new, settles and keeps it.
   void try_pose(std::uint32_t model, const RigidPose& pose);
 
   void add(MonoCandidate candidate);
-  bool beyond_doubt() const { return best_ < kBeyondDoubt; }
-  std::size_t settled() const { return settled_; }
+  bool beyond_doubt() const { return beyond_doubt_; }
   std::vector<MonoCandidate>& candidates() { return candidates_; }
 
  private:
@@ -31,8 +34,10 @@ class CandidatePool {
   std::span<const SearchModel> models_;
   PoseCheck& check_;
   std::vector<MonoCandidate> candidates_;
-  double best_ = 1e9;
-  std::size_t settled_ = 0;
+  void judge(const MonoCandidate& candidate);
+
+  bool beyond_doubt_ = false;
+  std::vector<std::size_t> settled_;  // by model
 };
 
 }  // namespace landmarkdb

@@ -122,6 +122,29 @@ std::span<const Match> PoseCheck::look(std::uint32_t model, const RigidPose& pos
   return matches_;
 }
 
+std::span<const Match> PoseCheck::grow(std::uint32_t model, RigidPose& pose) {
+  constexpr std::size_t kSeed = 7;
+  constexpr int kRounds = 5;
+  const SearchModel& search = models_[model];
+  std::size_t before = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    const double depth = (pose * search.center).z();
+    if (!(depth >= options_.min_depth_m) || !(depth <= options_.max_depth_m)) return {};
+    const Eigen::Vector3d sight = -(pose.R.transpose() * pose.t) - search.center;
+    const std::vector<std::uint16_t>& seen = search.seen[nearest_view(sight.normalized())];
+    const std::size_t need = std::max(
+        kLeastHits,
+        static_cast<std::size_t>(std::ceil(kLeastShare * static_cast<double>(seen.size()))));
+    const std::size_t hits =
+        collect(model, pose, seen, kLook_px * options_.scale, std::max(before + 1, kSeed));
+    if (hits < kSeed || hits <= before) return {};
+    if (hits >= need) return matches_;
+    before = hits;
+    if (!refine(model, pose, nullptr)) return {};
+  }
+  return {};
+}
+
 bool PoseCheck::refine(std::uint32_t model, RigidPose& pose, MonoCandidate* result) const {
   std::vector<PosePoint> points;
   points.reserve(matches_.size());
@@ -181,6 +204,14 @@ std::optional<MonoCandidate> PoseCheck::settle(std::uint32_t model,
   }
   candidate.rms_px = std::sqrt(sum / static_cast<double>(candidate.matches.size()));
   candidate.log10_nfa = score(candidate, seen);
+  if (!edges_.empty()) {
+    constexpr double kStep_px = 12.0;
+    constexpr std::size_t kMostSamples = 200;
+    const std::vector<EdgeSample> samples =
+        visible_edges(search, camera_, candidate.pose, kStep_px * options_.scale, kMostSamples);
+    candidate.edge_share = edge_share(samples, edges_);
+    candidate.edge_odds = score_edges(samples.size(), kStep_px, candidate.edge_share);
+  }
   return candidate;
 }
 
@@ -211,11 +242,31 @@ double PoseCheck::score(const MonoCandidate& candidate, std::span<const std::uin
   const double disc = std::numbers::pi * reach * reach / (high - low).prod();
   double p = 0.0;
   for (std::size_t type = 0; type < kFeatureTypes; ++type) p += of_type[type] * in_box[type];
-  p = 1.0 - std::exp(-disc * p / static_cast<double>(seen.size()));
-  const std::size_t hits = candidate.matches.size();
-  double log10_nfa =
-      options_.log10_tests +
-      log10_binomial_tail(seen.size() - std::min<std::size_t>(4, seen.size()), hits - 4, p);
+  // The nearer the hits, the less likely by chance: the better of two radii counts (Moisan and
+  // Stival 2004 take the best of all), where the features are placed well enough for the smaller
+  // one.
+  constexpr std::array<double, 2> kRadii{1.0, 0.5};
+  double sigma_px = 0.0;
+  for (const Match& match : candidate.matches) {
+    sigma_px += image_[match.image].sigma_px / static_cast<double>(candidate.matches.size());
+  }
+  const std::size_t trials = seen.size() - std::min<std::size_t>(4, seen.size());
+  double tail = 0.0, radii = 0.0;
+  for (const double radius : kRadii) {
+    if (radius < 1.0 && 3.0 * sigma_px > radius * reach) continue;
+    const std::size_t hits = static_cast<std::size_t>(
+        std::count_if(candidate.matches.begin(), candidate.matches.end(), [&](const Match& m) {
+          return radius == 1.0 || double{m.distance_px} <= radius * reach;
+        }));
+    if (radius < 1.0 && hits < kLeastHits) continue;
+    const double chance =
+        1.0 - std::exp(-radius * radius * disc * p / static_cast<double>(seen.size()));
+    radii += 1.0;
+    tail = std::min(
+        tail,
+        log10_binomial_tail(trials, std::max(hits, kLeastHits - 1) - (kLeastHits - 1), chance));
+  }
+  double log10_nfa = options_.log10_tests + std::log10(radii) + tail;
 
   std::size_t edges = 0, linked = 0, arms = 0, fitting = 0;
   double chance_of_arm = 0.0;
@@ -265,6 +316,20 @@ double PoseCheck::score(const MonoCandidate& candidate, std::span<const std::uin
                                      chance_of_arm / static_cast<double>(arms));
   }
   return log10_nfa;
+}
+
+// How much likelier this share of its edges is where the model stands than where something else
+// has made it fit: log10, negative for the model.
+double PoseCheck::score_edges(std::size_t samples, double step_px, double share) const {
+  // Samples of one straight edge come and go together: so much of it counts as one trial.
+  constexpr double kTogether_px = 48.0;
+  constexpr double kOfRight =
+      0.85;  // of a model that is there: parts have no contrast, or are hidden
+  constexpr double kOfWrong =
+      0.35;  // of one that is not: the fit has drawn it to the image's edges
+  const double trials = static_cast<double>(samples) * step_px / kTogether_px;
+  return -trials * (share * std::log10(kOfRight / kOfWrong) +
+                    (1.0 - share) * std::log10((1.0 - kOfRight) / (1.0 - kOfWrong)));
 }
 
 void PoseCheck::settle_on_edges(MonoCandidate& candidate) const {
@@ -324,6 +389,7 @@ void PoseCheck::settle_on_edges(MonoCandidate& candidate) const {
     }
     candidate.rms_px = std::sqrt(sum / static_cast<double>(candidate.matches.size()));
   }
+  candidate.edge_odds = score_edges(samples.size(), kStep_px, candidate.edge_share);
 }
 
 void PoseCheck::take(const MonoCandidate& candidate) {

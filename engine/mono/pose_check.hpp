@@ -33,14 +33,14 @@ struct MonoCandidate {
   double rms_px = 0.0;
   double log10_nfa = 0.0;  // of points, links and directions together
   double edge_share = 0.0;
+  double edge_odds = 0.0;  // log10, negative for the model: see score_edges
   bool ambiguous = false;  // `twin`, the other tilt of a plane, fits about as well
   RigidPose twin{};
   double twin_odds = 0.0;  // of the twin against the pose
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
-  // Lower is better: edges decide where the points do not. A refined pose is drawn to whatever
-  // edges there are, so their share is no probability; all of them weigh as much as four decades.
-  double rank() const { return log10_nfa - 4.0 * edge_share; }
+  // Lower is better: edges decide where the points do not.
+  double rank() const { return log10_nfa + edge_odds; }
 };
 
 struct CheckOptions {
@@ -64,6 +64,11 @@ class PoseCheck {
   // other objects hold. Empty: not enough.
   std::span<const Match> look(std::uint32_t model, const RigidPose& pose);
 
+  // Where the quick look fails but seven points agree: refines the pose on them and looks again, as
+  // long as their number grows. A pose from a small part of a large model is not good enough yet at
+  // its far end.
+  std::span<const Match> grow(std::uint32_t model, RigidPose& pose);
+
   // Refines a pose that passed the quick look, counting again at 5 and 3.5 px, and says what speaks
   // for it. nullopt where too little is left.
   std::optional<MonoCandidate> settle(std::uint32_t model,
@@ -72,6 +77,8 @@ class PoseCheck {
 
   // Refinement with the edges of the image too, and their share; `rank` counts it from there.
   void settle_on_edges(MonoCandidate& candidate) const;
+
+  bool has_edges() const { return !edges_.empty(); }
 
   void take(const MonoCandidate& candidate);
   bool is_taken(std::size_t image_point) const { return taken_[image_point] != 0; }
@@ -86,6 +93,10 @@ class PoseCheck {
                       std::size_t need);
   bool refine(std::uint32_t model, RigidPose& pose, MonoCandidate* result) const;
   double score(const MonoCandidate& candidate, std::span<const std::uint16_t> seen) const;
+  // How much likelier this share of its edges is where the model stands than where something else
+  // has made it fit: log10, negative for the model. Samples are `step_px` apart in an image 640
+  // pixels wide.
+  double score_edges(std::size_t samples, double step_px, double share) const;
 
   std::span<const SearchModel> models_;
   const ImageView& image_;

@@ -32,6 +32,14 @@ double recognition_confidence(const RecognitionEvidence& evidence) {
   const std::array<double, kConfidenceTerms> terms = confidence_terms(evidence);
   double log_odds = 0.0;
   for (std::size_t i = 0; i < terms.size(); ++i) log_odds += kWeights[i] * terms[i];
+  // Corners of real things stand in rows and rectangles and fall into place more often than strewn
+  // points do, but the edges between them do not: no answer is surer than its edges, short of
+  // overwhelming evidence. On real pictures wrong poses had shares up to 0.75, right ones from
+  // 0.80.
+  constexpr double kEvenShare = 0.78, kSteepness = 25.0, kOverwhelming = -30.0;
+  if (evidence.has_edges && evidence.log10_nfa > kOverwhelming) {
+    log_odds = std::min(log_odds, kSteepness * (evidence.edge_share - kEvenShare));
+  }
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
+
 #include "engine/mono/point_pose.hpp"
 #include "engine/mono/refine_pose.hpp"
 
 namespace landmarkdb {
 namespace {
 
-constexpr std::size_t kSettled = 8;    // candidates that are brought to rest
+constexpr std::size_t kSettled = 12;   // candidates that are brought to rest
 constexpr std::size_t kMostKept = 24;  // that are remembered as rivals
 constexpr int kClimbs = 4;             // a grid of six is crossed in as many places, two at a time
 
@@ -79,6 +81,42 @@ void settle_twins(std::span<const SearchModel> models,
       -0.5 * std::min(100.0, std::abs(found.poses[1].cost - found.poses[0].cost) / variance));
 }
 
+// Which side of a flat model the camera is on: positive where the plane's normal, with its largest
+// part positive, points to it; 0 for a model that is not flat.
+double side_of_plane(const SearchModel& search, const RigidPose& pose) {
+  if (!is_flat(search.model())) return 0.0;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const PosePoint& point : search.points) {
+    const Eigen::Vector3d w = point.xyz - search.center;
+    spread += w * w.transpose();
+  }
+  Eigen::Vector3d normal =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+  Eigen::Index largest = 0;
+  normal.cwiseAbs().maxCoeff(&largest);
+  if (normal[largest] < 0.0) normal = -normal;
+  return normal.dot(-(pose.R.transpose() * pose.t) - search.center);
+}
+
+// A flat pattern that is its own mirror image looks the same from behind. It is then taken to lie
+// as calibration targets do: x right, y down, z away from the camera. The other pose is no rival.
+void prefer_front(std::span<const SearchModel> models, std::vector<MonoCandidate>& candidates) {
+  constexpr double kSame = 1.0;  // log10 of the false alarms
+  if (candidates.empty()) return;
+  const std::uint32_t model = candidates.front().model;
+  const double side = side_of_plane(models[model], candidates.front().pose);
+  for (std::size_t i = 1; i < candidates.size() && side != 0.0; ++i) {
+    if (candidates[i].rank() > candidates.front().rank() + kSame) return;
+    if (candidates[i].model != model ||
+        side_of_plane(models[model], candidates[i].pose) * side >= 0.0) {
+      continue;
+    }
+    if (side > 0.0) candidates.front() = candidates[i];
+    candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(i));
+    return;
+  }
+}
+
 }  // namespace
 
 void settle_rivals(std::span<const SearchModel> models,
@@ -107,6 +145,7 @@ void settle_rivals(std::span<const SearchModel> models,
     check.settle_on_edges(candidates[i]);
   }
   sort_by_rank(candidates, kMostKept);
+  prefer_front(models, candidates);
 }
 
 }  // namespace landmarkdb

@@ -18,7 +18,8 @@ constexpr double kCell_px = 24.0;
 constexpr double kAngles = 12.0;
 constexpr double kDepthsAnEFold = 4.0;
 constexpr std::size_t kFeaturesOfABin = 5;
-constexpr std::size_t kMostBins = 400;
+constexpr std::size_t kMostBins = 800;
+constexpr std::size_t kLeastBins = 8;  // of a model
 constexpr std::size_t kMostSingles = 4000;
 constexpr std::size_t kMostVotes = 600000;
 constexpr std::size_t kCounters = std::size_t{1} << 16U;
@@ -223,7 +224,10 @@ struct Bin {
   std::size_t features, first, end;
 };
 
-std::vector<Bin> full_bins(std::span<const Vote> votes, const QuadIndex& index) {
+// The fullest bins, of each model its share: one that looks like everything leaves room for others.
+std::vector<Bin> full_bins(std::span<const Vote> votes,
+                           const QuadIndex& index,
+                           std::size_t models) {
   std::vector<Bin> bins;
   std::vector<std::uint16_t> features;
   for (std::size_t i = 0; i < votes.size();) {
@@ -244,7 +248,11 @@ std::vector<Bin> full_bins(std::span<const Vote> votes, const QuadIndex& index) 
   }
   std::stable_sort(
       bins.begin(), bins.end(), [](const Bin& a, const Bin& b) { return a.features > b.features; });
-  if (bins.size() > kMostBins) bins.resize(kMostBins);
+  const std::size_t share = std::max(kLeastBins, kMostBins / models);
+  std::vector<std::size_t> kept(models, 0);
+  std::erase_if(bins, [&](const Bin& bin) {
+    return ++kept[index.quads()[votes[bin.first].model_quad].model] > share;
+  });
   return bins;
 }
 
@@ -269,7 +277,7 @@ bool search_by_votes(std::span<const SearchModel> models,
   }
   std::stable_sort(
       shared.begin(), shared.end(), [](const Vote& a, const Vote& b) { return a.bin < b.bin; });
-  for (const Bin& bin : full_bins(shared, index)) {
+  for (const Bin& bin : full_bins(shared, index, models.size())) {
     run.check("verify");
     const std::span<const Vote> of_bin = std::span(shared).subspan(bin.first, bin.end - bin.first);
     const std::vector<Pair> pairs = pairs_of(of_bin, index, quads);
