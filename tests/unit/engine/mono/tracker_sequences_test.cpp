@@ -1,10 +1,13 @@
 // Sequences of Debian's package visp-images-data; skipped where it is not installed.
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,6 +16,7 @@
 #include "engine/mono/model_triples.hpp"
 #include "engine/mono/read_image.hpp"
 #include "engine/mono/read_model.hpp"
+#include "engine/mono/recognizer.hpp"
 #include "engine/mono/tracker.hpp"
 
 namespace landmarkdb {
@@ -47,7 +51,7 @@ Eigen::Isometry3d castle_truth(int frame) {
   return from_row_major(numbers);
 }
 
-TEST(TrackerSequences, TheRenderedCastleIsFollowedThroughAllItsFrames) {
+TEST(TrackerSequences, TheRenderedCastleIsFoundFromNothingAndFollowedThroughAllItsFrames) {
   const fs::path folder = kData / "mbt-depth/Castle-simu";
   if (!fs::exists(folder)) GTEST_SKIP() << "visp-images-data is not installed";
   Camera camera;
@@ -58,14 +62,18 @@ TEST(TrackerSequences, TheRenderedCastleIsFollowedThroughAllItsFrames) {
   // its middle.
   camera.cx = 319.5;
   camera.cy = 239.5;
-  Tracker tracker(record_of(folder / "Models/chateau.cao"), camera, {}, nullptr);
-  tracker.start_from(castle_truth(1));
+  const auto record = record_of(folder / "Models/chateau.cao");
+  auto catalog = std::make_shared<MonoCatalog>();
+  catalog->entries.push_back({.model_id = 1, .record = record});
+  const Recognizer recognizer(catalog);
+  Tracker tracker(record, camera, {}, &recognizer);
   std::vector<double> off_m;
   std::vector<double> off_rad;
   for (int frame = 1; frame <= 40; ++frame) {
     const TrackResult result =
         tracker.next(read_image(folder / "Images" / numbered("Image_%04d.pgm", frame)), {});
-    ASSERT_EQ(result.status, TrackStatus::kTracked) << "frame " << frame << ": " << result.reason;
+    ASSERT_EQ(result.status, frame == 1 ? TrackStatus::kRecognized : TrackStatus::kTracked)
+        << "frame " << frame << ": " << result.reason;
     const Eigen::Isometry3d truth = castle_truth(frame);
     off_m.push_back((result.T_camera_object->translation() - truth.translation()).norm());
     off_rad.push_back(
