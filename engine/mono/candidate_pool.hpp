@@ -12,7 +12,7 @@ namespace landmarkdb {
 // Where the image's edges are known they have to agree: corners of real things stand in rows and
 // rectangles, and fall into place by chance more often than points strewn at random.
 inline constexpr double kBeyondDoubt = -4.0;
-inline constexpr double kBeyondDoubtWithEdges = -20.0;
+inline constexpr double kBeyondDoubtWithEdges = -10.0;
 inline constexpr double kBeyondDoubtShare = 0.85;  // of the visible edges
 
 // The hypotheses of one search that have passed, each model's pose once.
