@@ -60,7 +60,11 @@ CLI::Option* add_repeated(CLI::App& app,
                           const std::string& names,
                           std::vector<std::string>& values,
                           const std::string& description) {
-  return app.add_option(names, values, description)->expected(1, 1 << 20)->allow_extra_args(false);
+  // CLI11 heeds allow_extra_args(false) for options without a real upper bound only.
+  constexpr int kUnbounded = CLI::detail::expected_max_vector_size;
+  return app.add_option(names, values, description)
+      ->expected(1, kUnbounded)
+      ->allow_extra_args(false);
 }
 
 }  // namespace landmarkdb::cli

@@ -80,12 +80,16 @@ Client& Client::operator=(Client&&) noexcept = default;
 
 const ServerInfo& Client::server() const { return state_->info; }
 
-QueryResult Client::query(const PointCloud& cloud,
+QueryResult Client::query(std::span<const QueryCloud> clouds,
                           const QueryOptions& options,
                           const RunContext& context) {
-  state_->check_points(cloud.size());
+  std::size_t points = 0;
+  for (const QueryCloud& one : clouds) points += one.cloud.size();
+  state_->check_points(points);
   v1::Envelope request;
-  *request.mutable_query()->add_clouds() = to_proto(cloud, state_->encoding());
+  for (const QueryCloud& one : clouds) {
+    add_to_proto(one, state_->encoding(), *request.mutable_query());
+  }
   *request.mutable_query()->mutable_options() = to_proto(options);
   return from_proto(
       state_->call(std::move(request), v1::Envelope::kQueryResult, context).query_result());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,9 +32,10 @@ class Client {
 
   const ServerInfo& server() const;
 
-  // Where was this cloud taken? Sensor frame, metres, NaN allowed; seen from zero unless it has a
-  // viewpoint. "Not found" is an answer. Nothing is thinned on the way; points travel as float32.
-  QueryResult query(const PointCloud& cloud,
+  // Where were these clouds taken? One in the sensor frame, or several with their poses in a frame
+  // they share; metres, NaN allowed; each seen from its zero unless it has a viewpoint. "Not found"
+  // is an answer. Nothing is thinned on the way; points travel as float32.
+  QueryResult query(std::span<const QueryCloud> clouds,
                     const QueryOptions& options,
                     const RunContext& context);
 

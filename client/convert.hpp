@@ -18,6 +18,8 @@ struct CloudEncoding {
 // Points as float32, bit for bit; the first viewpoint, where there is one; normals and colours stay
 // behind.
 v1::Cloud to_proto(const PointCloud& cloud, const CloudEncoding& encoding);
+// Adds one of a question's clouds, and its pose.
+void add_to_proto(const QueryCloud& cloud, const CloudEncoding& encoding, v1::QueryRequest& out);
 v1::QueryOptions to_proto(const QueryOptions& options);
 v1::SceneAddRequest to_proto(const SceneAdd& add, const CloudEncoding& encoding);
 v1::Landmark to_proto(const Landmark& landmark);

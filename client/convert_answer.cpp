@@ -58,6 +58,7 @@ Hypothesis hypothesis(const v1::Hypothesis& h) {
              .margin = h.fit().margin(),
              .agreeing = h.fit().agreeing(),
              .contrast = h.fit().contrast(),
+             .contradicted = h.fit().contradicted(),
              .observability = h.fit().observability()};
   out.covariance = matrix<6>(h.covariance(), "covariance");
   return out;

@@ -106,6 +106,11 @@ v1::Cloud to_proto(const PointCloud& cloud, const CloudEncoding& encoding) {
   return out;
 }
 
+void add_to_proto(const QueryCloud& cloud, const CloudEncoding& encoding, v1::QueryRequest& out) {
+  *out.add_clouds() = to_proto(cloud.cloud, encoding);
+  put_pose(out.mutable_t_query_clouds(), cloud.T_query_cloud);
+}
+
 v1::QueryOptions to_proto(const QueryOptions& options) {
   v1::QueryOptions out;
   out.set_profile(options.profile == Profile::kPaper ? v1::PROFILE_PAPER : v1::PROFILE_ROBUST);

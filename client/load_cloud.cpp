@@ -53,4 +53,11 @@ PointCloud load_cloud(const std::filesystem::path& path, const LoadOptions& opti
   return cloud;
 }
 
+void check_one_each(const std::string& option, std::size_t values, std::size_t clouds) {
+  if (values == 0 || values == clouds) return;
+  throw cli::UsageError(option,
+                        "given " + std::to_string(values) + " times for " + std::to_string(clouds) +
+                            " clouds, want none or one a cloud");
+}
+
 }  // namespace landmarkdb::client

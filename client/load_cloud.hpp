@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,5 +21,8 @@ struct LoadOptions {
 // Reads a cloud, mesh or depth image. Throws Error{kInvalidArgument} naming the file, also when
 // fewer than four of its points are finite.
 PointCloud load_cloud(const std::filesystem::path& path, const LoadOptions& options);
+
+// Refuses an option that is given neither never nor once for each cloud (cli::UsageError).
+void check_one_each(const std::string& option, std::size_t values, std::size_t clouds);
 
 }  // namespace landmarkdb::client

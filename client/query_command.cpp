@@ -1,6 +1,7 @@
 #include "client/query_command.hpp"
 
 #include <memory>
+#include <utility>
 
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
@@ -17,6 +18,7 @@
 #include "client/render_text.hpp"
 #include "client/report/report.hpp"
 #include "client/session.hpp"
+#include "engine/cloud/join_clouds.hpp"
 
 namespace landmarkdb::client {
 namespace {
@@ -30,20 +32,34 @@ const std::vector<cli::Example> kExamples = {
      "the same for a depth image, for scripts"},
     {"landmarkdb query scan.pcd --scene lobby --up 0,0,1 --correspondences pairs.csv",
      "one scene only, gravity known, every pair written down"},
+    {"landmarkdb query a.ply b.ply --pose a.txt --pose b.txt",
+     "two views whose poses to each other are known, as one"},
     {"landmarkdb query view.ply --report where.html", "a page that shows the cloud in the place"},
     {"landmarkdb query view.ply --explain", "which step lost it, and what would have helped"},
 };
 
 void add_input_options(CLI::App& app, QueryArguments& a) {
-  app.add_option("CLOUD", a.cloud, "Point cloud, mesh, or with --camera a depth image")->required();
+  app.add_option("CLOUD",
+                 a.clouds,
+                 "Point cloud, mesh, or with --camera a depth image; several are laid together")
+      ->required()
+      ->expected(1, static_cast<int>(kMostQueryClouds));
+  cli::add_repeated(app,
+                    "--pose",
+                    a.poses,
+                    "Pose of a cloud in the frame they share (the answer's sensor frame), one for "
+                    "each cloud, 16 numbers by rows [identity]")
+      ->type_name("FILE");
   app.add_option("--camera", a.camera, "Camera file (YAML or JSON): CLOUD is a depth image")
       ->type_name("FILE");
   app.add_option("--units", a.units, "Unit of the cloud's coordinates")
       ->check(CLI::IsMember(kUnitNames))
       ->capture_default_str();
-  app.add_option("--viewpoint",
-                 a.viewpoint,
-                 "Where the sensor stood, in the cloud's frame and units [the file's, else 0,0,0]")
+  cli::add_repeated(app,
+                    "--viewpoint",
+                    a.viewpoints,
+                    "Where the sensor stood, in the cloud's frame and units, one for each cloud "
+                    "[the file's, else 0,0,0]")
       ->type_name("x,y,z");
 }
 
@@ -113,6 +129,22 @@ void set_prior(const QueryArguments& a, QueryOptions& options) {
   options.prior_T_scene_sensor = cli::read_pose(a.prior);
 }
 
+// What a report calls the clouds.
+std::string title_of(const QueryArguments& a) {
+  std::string title = a.clouds.front();
+  if (a.clouds.size() > 1) title += " and " + std::to_string(a.clouds.size() - 1) + " more";
+  return title;
+}
+
+// The clouds as the server lays them together, for drawing. One alone is drawn as it was sent.
+PointCloud in_one(std::vector<QueryCloud> clouds) {
+  if (clouds.size() == 1 && clouds[0].T_query_cloud.matrix().isIdentity(0.0)) {
+    return std::move(clouds[0].cloud);
+  }
+  CloudCounts counts;
+  return join_clouds(std::move(clouds), counts);
+}
+
 }  // namespace
 
 void add_query_command(CLI::App& app, Program& program) {
@@ -150,23 +182,33 @@ QueryOptions query_options(const QueryArguments& a) {
   return options;
 }
 
+std::vector<QueryCloud> load_query(const QueryArguments& a) {
+  check_one_each("--pose", a.poses.size(), a.clouds.size());
+  check_one_each("--viewpoint", a.viewpoints.size(), a.clouds.size());
+  std::vector<QueryCloud> clouds(a.clouds.size());
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    LoadOptions load{.units = a.units, .camera = a.camera, .viewpoint = {}};
+    if (!a.viewpoints.empty()) load.viewpoint = cli::parse_vector3(a.viewpoints[i], "--viewpoint");
+    if (!a.poses.empty()) clouds[i].T_query_cloud = cli::read_pose_file(a.poses[i]);
+    clouds[i].cloud = load_cloud(a.clouds[i], load);
+  }
+  return clouds;
+}
+
 int run_query(const QueryArguments& arguments, const Program& program) {
   const QueryOptions options = query_options(arguments);
-  LoadOptions load{.units = arguments.units, .camera = arguments.camera, .viewpoint = {}};
-  if (!arguments.viewpoint.empty()) {
-    load.viewpoint = cli::parse_vector3(arguments.viewpoint, "--viewpoint");
-  }
-  const PointCloud cloud = load_cloud(arguments.cloud, load);
+  std::vector<QueryCloud> clouds = load_query(arguments);
 
   Session session(program.options);
-  QueryResult result = session.connect().query(cloud, options, session.context());
+  QueryResult result = session.connect().query(clouds, options, session.context());
   session.finish();
   if (!arguments.correspondences.empty()) {
     write_correspondences(arguments.correspondences, result.correspondences);
   }
   if (!arguments.report.empty()) {
-    cli::write_file(
-        arguments.report, report_html({arguments.cloud, cloud, options}, result), "--report");
+    cli::write_file(arguments.report,
+                    report_html({title_of(arguments), in_one(std::move(clouds)), options}, result),
+                    "--report");
     if (!arguments.explain) result.explanation.reset();
   }
   program.print(query_json(result), query_text(result));

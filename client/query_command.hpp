@@ -11,10 +11,11 @@ namespace landmarkdb::client {
 
 // `query` as it is typed.
 struct QueryArguments {
-  std::string cloud;
+  std::vector<std::string> clouds;
+  std::vector<std::string> poses;
   std::string camera;
   std::string units = "m";
-  std::string viewpoint;
+  std::vector<std::string> viewpoints;
   std::string profile = "robust";
   std::vector<std::string> scenes;
   std::uint32_t top = 3;
@@ -37,6 +38,9 @@ struct QueryArguments {
 
 // The engine's options. Throws cli::UsageError and, for the prior's file, Error.
 QueryOptions query_options(const QueryArguments& arguments);
+
+// The clouds with their poses, read. Throws cli::UsageError and, for a file, Error.
+std::vector<QueryCloud> load_query(const QueryArguments& arguments);
 
 // Asks and prints. Returns the exit status: 0 localized, 3 not found, 4 ambiguous. Throws Error.
 int run_query(const QueryArguments& arguments, const Program& program);

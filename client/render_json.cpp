@@ -65,6 +65,7 @@ Json hypothesis_json(const Hypothesis& h) {
                 {"coverage", h.fit.coverage},
                 {"quality", h.fit.quality},
                 {"contrast", h.fit.contrast},
+                {"contradicted", h.fit.contradicted},
                 {"agreeing", h.fit.agreeing}};
   out["covariance"] = covariance_json(h.covariance);
   out["scene_version"] = h.scene_version;

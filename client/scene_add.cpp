@@ -13,16 +13,6 @@
 #include "client/load_cloud.hpp"
 
 namespace landmarkdb::client {
-namespace {
-
-void check_count(const std::string& option, std::size_t values, std::size_t clouds) {
-  if (values == 0 || values == clouds) return;
-  throw cli::UsageError(option,
-                        "given " + std::to_string(values) + " times for " + std::to_string(clouds) +
-                            " clouds, want none or one a cloud");
-}
-
-}  // namespace
 
 void add_scene_add_options(CLI::App& command, SceneAddArguments& a) {
   command.add_option("NAME", a.name, "Name of the scene; one that exists gets a new version")
@@ -52,8 +42,8 @@ void add_scene_add_options(CLI::App& command, SceneAddArguments& a) {
 }
 
 SceneAdd load_scene(const SceneAddArguments& a) {
-  check_count("--pose", a.poses.size(), a.clouds.size());
-  check_count("--viewpoint", a.viewpoints.size(), a.clouds.size());
+  check_one_each("--pose", a.poses.size(), a.clouds.size());
+  check_one_each("--viewpoint", a.viewpoints.size(), a.clouds.size());
   SceneAdd add;
   add.name = a.name;
   add.kind = a.kind == "object" ? EntryKind::kObject : EntryKind::kPlace;

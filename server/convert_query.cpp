@@ -6,7 +6,6 @@
 
 #include "engine/base/error.hpp"
 #include "engine/geometry/pose.hpp"
-#include "server/convert_cloud.hpp"
 #include "server/convert_explanation.hpp"
 
 namespace landmarkdb {
@@ -166,6 +165,7 @@ v1::Hypothesis hypothesis_message(const Hypothesis& hypothesis) {
   fit.set_margin(hypothesis.fit.margin);
   fit.set_observability(hypothesis.fit.observability);
   fit.set_contrast(hypothesis.fit.contrast);
+  fit.set_contradicted(hypothesis.fit.contradicted);
   fit.set_agreeing(hypothesis.fit.agreeing);
   fit.set_explained(hypothesis.fit.explained);
   fit.set_coverage(hypothesis.fit.coverage);
@@ -218,6 +218,34 @@ KeypointMethod from_proto(v1::KeypointMethod method,
     default:
       refuse(field, "no keypoint method has the number " + std::to_string(method));
   }
+}
+
+std::vector<QueryCloud> clouds_from_proto(const v1::QueryRequest& request,
+                                          PointAllowance& allowance) {
+  constexpr std::size_t kPoseNumbers = 16;
+  const auto count = static_cast<std::size_t>(request.clouds_size());
+  if (count == 0 || count > kMostQueryClouds) {
+    refuse(
+        "clouds",
+        "there are " + std::to_string(count) + ", want 1 to " + std::to_string(kMostQueryClouds));
+  }
+  const std::span<const double> poses(request.t_query_clouds().data(),
+                                      static_cast<std::size_t>(request.t_query_clouds_size()));
+  if (!poses.empty() && poses.size() != kPoseNumbers * count) {
+    refuse("t_query_clouds",
+           "has " + std::to_string(poses.size()) + " numbers for " + std::to_string(count) +
+               " clouds, want 16 each");
+  }
+  std::vector<QueryCloud> clouds(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string number = "[" + std::to_string(i) + "]";
+    if (!poses.empty()) {
+      clouds[i].T_query_cloud =
+          pose_from_proto(poses.subspan(kPoseNumbers * i, kPoseNumbers), "t_query_clouds" + number);
+    }
+    clouds[i].cloud = from_proto(request.clouds(static_cast<int>(i)), allowance, "clouds" + number);
+  }
+  return clouds;
 }
 
 v1::KeypointMethod to_proto(KeypointMethod method) {

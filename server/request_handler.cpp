@@ -187,17 +187,12 @@ void RequestHandler::dispatch(const v1::Envelope& request,
 v1::QueryResult RequestHandler::query(const v1::QueryRequest& request, const RunContext& context) {
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const Served> served = state_.served();
-  if (request.clouds_size() != 1) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "clouds: there are " + std::to_string(request.clouds_size()) + ", want one",
-                "clouds");
-  }
   const QueryOptions options = from_proto(request.options());
   PointAllowance allowance{options_.max_points, &memory_};
-  const PointCloud cloud = from_proto(request.clouds(0), allowance, "clouds[0]");
+  std::vector<QueryCloud> clouds = clouds_from_proto(request, allowance);
   const StageTimings::Duration load = std::chrono::steady_clock::now() - start;
 
-  QueryResult result = served->localizer->query(cloud, options, context);
+  QueryResult result = served->localizer->query(std::move(clouds), options, context);
   result.timings.load += load;
   result.timings.total += load;
   count_verdict(result, counters_);

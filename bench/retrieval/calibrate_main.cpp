@@ -40,7 +40,9 @@ int run(const Settings& settings) {
 std::string features_help() {
   std::string text = "Fit these alone, a,b,c, of:";
   for (const Feature& feature : all_features()) text += " " + std::string(feature.name);
-  return text + " (the last three only when named; contrast where all files have it)";
+  return text +
+         " (the last three only when named; contrast and root_contradicted where all files have "
+         "them)";
 }
 
 }  // namespace

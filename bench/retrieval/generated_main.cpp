@@ -123,7 +123,8 @@ void ask(const datasets::DepthFrame& frame,
     tally->milliseconds.push_back(answer.timings.total.count());
   }
   std::printf(
-      "%s,%d,%.4f,%d,%d,%.4f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%u,%lu,%.4f,%.0f,%.4f,"
+      "%s,%d,%.4f,%d,%d,%.4f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%u,%lu,%.4f,%.0f,%.4f,%."
+      "4f,"
       "%.0f\n",
       name.empty() ? "stranger" : name.c_str(),
       number,
@@ -145,6 +146,7 @@ void ask(const datasets::DepthFrame& frame,
       fit.rmse_m,
       fit.agreeing,
       fit.contrast,
+      fit.contradicted,
       answer.timings.total.count());
   std::fflush(stdout);
 }
@@ -186,7 +188,7 @@ int run(const Settings& settings) {
   std::puts(
       "place,frame,spread,status,right,metres,degrees,confidence,quality,overlap,explained,"
       "coverage,"
-      "crossed,margin,observability,inliers,keypoints,rmse_m,agreeing,contrast,ms");
+      "crossed,margin,observability,inliers,keypoints,rmse_m,agreeing,contrast,contradicted,ms");
   Tally all;
   Tally informative;
   for (std::size_t p = 0; p < places.size(); ++p) {

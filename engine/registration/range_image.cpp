@@ -90,19 +90,28 @@ RangeImage::Cell RangeImage::widen(std::size_t cell) const {
   return wide;
 }
 
-SightCounts RangeImage::compare(std::span<const Eigen::Vector3f> surface,
-                                const Eigen::Isometry3d& T_here_surface,
-                                float patch_m,
-                                const SightTolerance& tolerance) const {
+SightCounts& SightCounts::operator+=(const SightCounts& other) {
+  measured += other.measured;
+  agree += other.agree;
+  crossed += other.crossed;
+  hidden += other.hidden;
+  solid += other.solid;
+  return *this;
+}
+
+std::vector<RangeImage::Predicted> RangeImage::render(const SightSurface& surface,
+                                                      const Eigen::Isometry3d& T_here_surface,
+                                                      float patch_m) const {
   const Eigen::Matrix3f R = T_here_surface.linear().cast<float>();
   const Eigen::Vector3f t = T_here_surface.translation().cast<float>() - viewpoint_;
   constexpr int kWidestPatch = 6;  // cells to each side: what stands at the lens fills no more
   const float reach = 2.0F * max_range_m_;  // what lies further could only be hidden
-  std::vector<float> predicted(cells_.size(), kInfinity);
-  for (const Eigen::Vector3f& point : surface) {
-    const Eigen::Vector3f ray = R * point + t;
+  std::vector<Predicted> predicted(cells_.size(), {kInfinity, false});
+  for (std::size_t i = 0; i < surface.points.size(); ++i) {
+    const Eigen::Vector3f ray = R * surface.points[i] + t;
     const float range = ray.norm();
     if (!(range > 0.0F) || range > reach) continue;
+    const bool back = !surface.normals.empty() && ray.dot(R * surface.normals[i]) > 0.0F;
     const Place place = place_of(ray);
     const float half_patch = 0.5F * patch_m / (range * static_cast<float>(step_rad_));
     const int half =
@@ -112,26 +121,59 @@ SightCounts RangeImage::compare(std::span<const Eigen::Vector3f> surface,
       for (int column = std::max(0, place.column - half);
            column <= std::min(side_ - 1, place.column + half);
            ++column) {
-        float& nearest = predicted[index_of({place.face, row, column})];
-        nearest = std::min(nearest, range);
+        Predicted& nearest = predicted[index_of({place.face, row, column})];
+        if (range < nearest.range) nearest = {range, back};
       }
     }
   }
+  return predicted;
+}
+
+std::size_t RangeImage::solid(const std::vector<signed char>& says) const {
+  std::size_t count = 0;
+  for (std::size_t cell = 0; cell < says.size(); ++cell) {
+    if (says[cell] >= 0) continue;
+    const int index = static_cast<int>(cell);
+    const Place place{index / (side_ * side_), (index / side_) % side_, index % side_};
+    bool alone = false;
+    for (int row = std::max(0, place.row - 1); row <= std::min(side_ - 1, place.row + 1); ++row) {
+      for (int column = std::max(0, place.column - 1);
+           column <= std::min(side_ - 1, place.column + 1);
+           ++column) {
+        alone = alone || says[index_of({place.face, row, column})] > 0;
+      }
+    }
+    count += alone ? 0U : 1U;
+  }
+  return count;
+}
+
+SightCounts RangeImage::compare(const SightSurface& surface,
+                                const Eigen::Isometry3d& T_here_surface,
+                                float patch_m,
+                                const SightTolerance& tolerance) const {
+  const std::vector<Predicted> predicted = render(surface, T_here_surface, patch_m);
   SightCounts counts;
+  std::vector<signed char> says(cells_.size(), 0);  // 1: agrees, -1: contradicts, 0: nothing
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const Cell& wide = widened_[i];
     if (!(wide.furthest > 0.0F)) continue;
     ++counts.measured;
-    if (predicted[i] == kInfinity) continue;
+    if (predicted[i].range == kInfinity) continue;
+    const bool front = !predicted[i].back;
     const float slack = tolerance.metres + tolerance.share * wide.furthest;
-    if (predicted[i] < wide.nearest - slack) {
+    if (predicted[i].range < wide.nearest - slack) {
       ++counts.crossed;
-    } else if (predicted[i] > wide.furthest + slack) {
-      ++counts.hidden;
-    } else {
+      says[i] = -1;
+    } else if (front && predicted[i].range <= wide.furthest + slack) {
       ++counts.agree;
+      says[i] = 1;
+    } else if (front) {
+      ++counts.hidden;
+      says[i] = -1;
     }
   }
+  counts.solid = solid(says);
   return counts;
 }
 

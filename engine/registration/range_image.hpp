@@ -15,9 +15,21 @@ struct SightCounts {
   std::size_t agree = 0;     // the entry has a surface at the range measured
   std::size_t crossed = 0;   // the entry has a surface nearer: the ray went through it
   std::size_t hidden = 0;    // the entry has a surface further off only: something stands before it
-  // In the remaining directions the entry has nothing: it was not scanned there, and nothing is
-  // said.
+  // In the remaining directions the entry has nothing (it was not scanned there) or only the back
+  // of a surface further off (seen through a gap of its scan), and nothing is said.
   std::size_t predicted() const { return agree + crossed + hidden; }
+
+  // Of those crossed or hidden: the eight directions around are none that agree. A silhouette half
+  // a cell off leaves a line of contradictions; something that is not there leaves an area.
+  std::size_t solid = 0;
+
+  SightCounts& operator+=(const SightCounts& other);
+};
+
+// The surface an entry predicts: points, and normals where their side is known (empty otherwise).
+struct SightSurface {
+  std::span<const Eigen::Vector3f> points;
+  std::span<const Eigen::Vector3f> normals{};
 };
 
 // How far before or behind the measured range still counts as seen: fixed, and a share of the
@@ -43,7 +55,7 @@ class RangeImage {
   // Renders `surface` (carried into this frame by T_here_surface, each point a patch `patch_m`
   // wide) and compares. Only directions whose eight neighbours were measured too are counted, so
   // that silhouettes decide nothing. Cost: one projection a point within reach.
-  SightCounts compare(std::span<const Eigen::Vector3f> surface,
+  SightCounts compare(const SightSurface& surface,
                       const Eigen::Isometry3d& T_here_surface,
                       float patch_m,
                       const SightTolerance& tolerance) const;
@@ -58,6 +70,14 @@ class RangeImage {
   struct Place {
     int face, row, column;
   };
+  struct Predicted {
+    float range;  // of the nearest surface; infinite: none
+    bool back;    // it is seen from behind
+  };
+  std::vector<Predicted> render(const SightSurface& surface,
+                                const Eigen::Isometry3d& T_here_surface,
+                                float patch_m) const;
+  std::size_t solid(const std::vector<signed char>& says) const;
   void measure(std::span<const Eigen::Vector3f> points);
   double complete_share() const;
   Place place_of(const Eigen::Vector3f& ray) const;

@@ -75,16 +75,18 @@ void measure_overlap(const SurfaceGrid& target,
   if (on_surface > 0.0) evidence.strength = scatter.diagonal() / on_surface;
 }
 
-void measure_sight(const RangeImage& ranges,
-                   std::span<const Eigen::Vector3f> entry,
+void measure_sight(std::span<const RangeImage> ranges,
+                   const SightSurface& entry,
                    const Eigen::Isometry3d& T_sensor_entry,
                    double cell_m,
                    const VerifyOptions& options,
                    Evidence& evidence) {
   const SightTolerance tolerance{static_cast<float>(options.sight_tolerance_cells * cell_m),
                                  static_cast<float>(options.sight_tolerance_range)};
-  const SightCounts counts =
-      ranges.compare(entry, T_sensor_entry, static_cast<float>(cell_m), tolerance);
+  SightCounts counts;
+  for (const RangeImage& image : ranges) {
+    counts += image.compare(entry, T_sensor_entry, static_cast<float>(cell_m), tolerance);
+  }
   const auto share = [](std::size_t part, std::size_t whole) {
     return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
   };
@@ -95,6 +97,7 @@ void measure_sight(const RangeImage& ranges,
       share(2 * counts.agree + kPriorDirections, 2 * (counts.predicted() + kPriorDirections));
   evidence.crossed = share(counts.crossed, counts.predicted());
   evidence.coverage = share(counts.predicted(), counts.measured);
+  evidence.contradicted = share(counts.solid, counts.predicted());
 }
 
 double observability(const IcpResult& icp, double source_extent_m, std::size_t source_points) {

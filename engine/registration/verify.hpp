@@ -14,12 +14,13 @@ namespace landmarkdb {
 
 // What a pose explains, and what speaks against it. Shares are 0..1.
 struct Evidence {
-  double overlap = 0.0;    // of the source points: on the target's surface, normals agreeing
-  double balanced = 0.0;   // the same, each surface direction weighted alike
-  double rmse_m = 0.0;     // of those points, to the surface
-  double explained = 0.0;  // of the directions where the entry predicts a range: it agrees
-  double crossed = 0.0;    // of the same: the sensor looked through the entry's surface
-  double coverage = 0.0;   // of the directions measured: the entry predicts a range
+  double overlap = 0.0;       // of the source points: on the target's surface, normals agreeing
+  double balanced = 0.0;      // the same, each surface direction weighted alike
+  double rmse_m = 0.0;        // of those points, to the surface
+  double explained = 0.0;     // of the directions where the entry predicts a range: it agrees
+  double crossed = 0.0;       // of the same: the sensor looked through the entry's surface
+  double coverage = 0.0;      // of the directions measured: the entry predicts a range
+  double contradicted = 0.0;  // of the directions predicted: in an area of them all is contradicted
   double observability =
       0.0;  // weakest freedom: 0 none (a plane), 1 as strong as it gets (a ball of normals)
   double agreeing = 0.0;  // the query's keypoints of which a descriptor pair agrees
@@ -48,9 +49,10 @@ void measure_overlap(const SurfaceGrid& target,
                      Evidence& evidence);
 
 // Measures how the entry's surface agrees with what the sensor saw and saw through. `entry` are
-// points of the stored entry, `T_sensor_entry` carries them into the sensor frame of `ranges`.
-void measure_sight(const RangeImage& ranges,
-                   std::span<const Eigen::Vector3f> entry,
+// points of the stored entry, `T_sensor_entry` carries them into the sensor frame of `ranges`, of
+// which there is one for each viewpoint.
+void measure_sight(std::span<const RangeImage> ranges,
+                   const SightSurface& entry,
                    const Eigen::Isometry3d& T_sensor_entry,
                    double cell_m,
                    const VerifyOptions& options,

@@ -71,14 +71,21 @@ struct Patch {
   std::vector<Eigen::Vector3f> normals;
 };
 
-// The part of an object's surface that faces the sensor: all of it that can be seen.
-Patch facing(const Meeting& object, const Eigen::Vector3d& viewpoint_object) {
+// The part of an object's surface that faces the sensor, from one viewpoint or another: all of it
+// that can be seen.
+Patch facing(const Meeting& object,
+             std::span<const Eigen::Vector3f> viewpoints,
+             const Eigen::Isometry3d& T_object_sensor) {
   constexpr float kGrazing = 0.2F;  // cosine: flatter surface is rarely measured
-  const Eigen::Vector3f sensor = viewpoint_object.cast<float>();
+  const Eigen::Isometry3f T = T_object_sensor.cast<float>();
   Patch patch;
   for (std::size_t i = 0; i < object.source.size(); ++i) {
-    const Eigen::Vector3f ray = sensor - object.source[i];
-    if (object.source_normals[i].dot(ray) < kGrazing * ray.norm()) continue;
+    const bool seen =
+        std::any_of(viewpoints.begin(), viewpoints.end(), [&](const Eigen::Vector3f& viewpoint) {
+          const Eigen::Vector3f ray = T * viewpoint - object.source[i];
+          return object.source_normals[i].dot(ray) >= kGrazing * ray.norm();
+        });
+    if (!seen) continue;
     patch.points.push_back(object.source[i]);
     patch.normals.push_back(object.source_normals[i]);
   }
@@ -129,7 +136,7 @@ Assessed assess_coarse(const Meeting& meeting,
     evidence.explained = evidence.coverage = 1.0;
   } else {
     measure_sight(query.ranges,
-                  entry.wide_points,
+                  {entry.wide_points},
                   assessed.T_entry_sensor.inverse(),
                   entry.wide.cell_m(),
                   verify,
@@ -156,15 +163,15 @@ void assess_fine(const Meeting& meeting,
   Evidence& evidence = assessed.evidence;
   evidence = {};
   const VerifyOptions verify = verify_options(meeting);
-  const Eigen::Vector3d viewpoint =
-      assessed.T_entry_sensor * query.cloud.viewpoints[0].cast<double>();
-  const Patch seen = meeting.entry_is_source ? facing(meeting, viewpoint) : Patch{};
+  const Patch seen = meeting.entry_is_source
+                         ? facing(meeting, query.cloud.viewpoints, assessed.T_entry_sensor)
+                         : Patch{};
   using Vectors = std::span<const Eigen::Vector3f>;
   const Vectors points = meeting.entry_is_source ? Vectors(seen.points) : meeting.source;
   const Vectors normals = meeting.entry_is_source ? Vectors(seen.normals) : meeting.source_normals;
   measure_overlap(meeting.target, points, normals, assessed.icp.T_target_source, verify, evidence);
   measure_sight(query.ranges,
-                entry.sight_points,
+                {entry.sight_points, entry.sight_normals},
                 assessed.T_entry_sensor.inverse(),
                 entry.record().prepared.resolution_m,
                 verify,

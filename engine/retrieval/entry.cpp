@@ -69,6 +69,7 @@ Entry make_entry(CatalogEntry stored, const RunContext& context) {
               .wide_points = {},
               .test = select_test_points(cloud.points, cloud.normals, {}, kTestPoints, kSeed),
               .sight_points = {},
+              .sight_normals = {},
               .centre = Eigen::Vector3d::Zero(),
               .extent_m = 0.0};
   for (const Surfel& surfel : entry.wide.surfels()) entry.wide_points.push_back(surfel.point);
@@ -82,6 +83,7 @@ Entry make_entry(CatalogEntry stored, const RunContext& context) {
   entry.extent_m = 2.0 * std::sqrt(squares / points);
   for (const std::uint32_t i : spread(cloud.size(), kSightPoints)) {
     entry.sight_points.push_back(cloud.points[i]);
+    if (cloud.normals_from_viewpoint) entry.sight_normals.push_back(cloud.normals[i]);
   }
   return entry;
 }

@@ -18,10 +18,11 @@ namespace landmarkdb {
 struct Entry {
   CatalogEntry stored;
   SurfaceGrid grid;
-  SurfaceGrid wide;                           // of places: the same surface in larger cells
-  std::vector<Eigen::Vector3f> wide_points;   // of its surfels
-  TestPoints test;                            // of the entry's own surface, for objects
-  std::vector<Eigen::Vector3f> sight_points;  // spread over the whole surface, for free space
+  SurfaceGrid wide;                            // of places: the same surface in larger cells
+  std::vector<Eigen::Vector3f> wide_points;    // of its surfels
+  TestPoints test;                             // of the entry's own surface, for objects
+  std::vector<Eigen::Vector3f> sight_points;   // spread over the whole surface, for free space
+  std::vector<Eigen::Vector3f> sight_normals;  // theirs; empty where their side is not known
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean of the points
   double extent_m = 0.0;                             // twice the root mean square distance from it
 

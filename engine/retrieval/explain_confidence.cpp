@@ -46,6 +46,7 @@ std::vector<ConfidenceTerm> confidence_terms(const Evidence& evidence,
   add_evidence("coverage", &Evidence::coverage, 1.0);
   add_evidence("observability", &Evidence::observability, 1.0);
   add_evidence("contrast", &Evidence::contrast, 1.0);
+  add_evidence("contradicted", &Evidence::contradicted, 0.0);
   std::stable_sort(
       terms.begin(), terms.end(), [](const auto& a, const auto& b) { return a.cost > b.cost; });
   return terms;

@@ -140,6 +140,7 @@ Hypothesis make_hypothesis(const Judged& judged,
                     .margin = judged.margin,
                     .agreeing = pose.evidence.agreeing,
                     .contrast = pose.evidence.contrast,
+                    .contradicted = pose.evidence.contradicted,
                     .observability = pose.evidence.observability};
   hypothesis.covariance = covariance_of(pose, entry, -input.query.cloud.origin);
   return hypothesis;

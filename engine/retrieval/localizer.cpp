@@ -176,6 +176,12 @@ const Catalog& Localizer::catalog() const { return *state_->catalog; }
 QueryResult Localizer::query(const PointCloud& cloud,
                              const QueryOptions& options,
                              const RunContext& context) const {
+  return query(std::vector<QueryCloud>{{cloud}}, options, context);
+}
+
+QueryResult Localizer::query(std::vector<QueryCloud> clouds,
+                             const QueryOptions& options,
+                             const RunContext& context) const {
   check_options(options);
   QueryResult answer;
   const StageTimer total(answer.timings.total);
@@ -185,8 +191,13 @@ QueryResult Localizer::query(const PointCloud& cloud,
   context.report("preprocess", 0, 1);
   const CleanQuery query = [&] {
     const StageTimer timer(answer.timings.preprocess);
-    return clean_query(cloud, context);
+    return clean_query(std::move(clouds), context);
   }();
+  if (options.solver == Solver::kPnp && query.cloud.viewpoints.size() > 1) {
+    refuse("solver",
+           "the solver pnp takes directions from one viewpoint, the clouds have " +
+               std::to_string(query.cloud.viewpoints.size()));
+  }
   answer.query.points = query.counts.points;
   answer.query.points_used = query.counts.used;
   answer.query.invalid = query.counts.invalid();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "engine/base/run_context.hpp"
 #include "engine/types/point_cloud.hpp"
@@ -21,12 +22,17 @@ class Localizer {
   Localizer(const Localizer&) = delete;
   Localizer& operator=(const Localizer&) = delete;
 
-  // `cloud` is in the sensor frame, metres, as the sensor gave it (NaN allowed); its viewpoint is
-  // the sensor frame's zero unless it says otherwise. "Not found" is a result with the stage that
-  // had nothing left. Throws Error{kInvalidArgument} for options that cannot be (a scene name that
-  // is not in the catalogue is kNotFound), Error{kCancelled} or Error{kDeadlineExceeded} from
-  // `context`. Same cloud, options and seed: the same answer but for the timings, whatever
-  // `context.threads` is.
+  // `clouds`: one in the sensor frame, metres, as the sensor gave it (NaN allowed), or several with
+  // their poses in a frame they share, which then stands for the sensor frame. "Not found" is a
+  // result with the stage that had nothing left. Throws Error{kInvalidArgument} for options that
+  // cannot be (a scene name that is not in the catalogue is kNotFound), Error{kCancelled} or
+  // Error{kDeadlineExceeded} from `context`. Same cloud, options and seed: the same answer but for
+  // the timings, whatever `context.threads` is.
+  QueryResult query(std::vector<QueryCloud> clouds,
+                    const QueryOptions& options,
+                    const RunContext& context) const;
+
+  // The same for one cloud.
   QueryResult query(const PointCloud& cloud,
                     const QueryOptions& options,
                     const RunContext& context) const;

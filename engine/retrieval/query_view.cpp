@@ -5,9 +5,9 @@
 #include <span>
 #include <utility>
 
+#include "engine/cloud/join_clouds.hpp"
 #include "engine/cloud/prepare_cloud.hpp"
 #include "engine/cloud/resolution.hpp"
-#include "engine/cloud/sanitise.hpp"
 #include "engine/features/describe_shot.hpp"
 #include "engine/features/detect_keypoints.hpp"
 #include "engine/features/range_noise.hpp"
@@ -66,21 +66,38 @@ Keypoints detect_enough(const PreparedCloud& cloud,
   return detect_keypoints(cloud, options, context);
 }
 
+// What was seen from each viewpoint; those nothing was seen from are left out.
+std::vector<RangeImage> range_images(const PointCloud& cloud) {
+  if (cloud.viewpoint_index.empty()) {
+    return {RangeImage(cloud.points, cloud.viewpoints[0], kSightStepRad)};
+  }
+  std::vector<std::vector<Eigen::Vector3f>> seen(cloud.viewpoints.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    seen[cloud.viewpoint_index[i]].push_back(cloud.points[i]);
+  }
+  std::vector<RangeImage> images;
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    if (!seen[k].empty()) images.emplace_back(seen[k], cloud.viewpoints[k], kSightStepRad);
+  }
+  return images;
+}
+
 }  // namespace
 
-CleanQuery clean_query(PointCloud cloud, const RunContext& context) {
-  const CloudCounts counts = sanitise(cloud, context);
-  if (cloud.viewpoints.empty()) {
-    cloud.viewpoints.emplace_back(-cloud.origin.cast<float>());
-    cloud.viewpoint_index.clear();
-  }
+CleanQuery clean_query(std::vector<QueryCloud> clouds, const RunContext& context) {
+  CloudCounts counts;
+  PointCloud cloud = join_clouds(std::move(clouds), counts, context);
   const double spacing_m = cloud.size() >= 4 ? measure_scale(cloud, context).spacing_m : 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3f& point : cloud.points) centre += point.cast<double>();
   if (!cloud.empty()) centre /= static_cast<double>(cloud.size());
   context.check("preprocess");
-  RangeImage ranges(cloud.points, cloud.viewpoints[0], kSightStepRad);
+  std::vector<RangeImage> ranges = range_images(cloud);
   return {std::move(cloud), counts, spacing_m, centre, std::move(ranges)};
+}
+
+CleanQuery clean_query(const PointCloud& cloud, const RunContext& context) {
+  return clean_query(std::vector<QueryCloud>{{cloud}}, context);
 }
 
 QueryView view_query(const CleanQuery& query,

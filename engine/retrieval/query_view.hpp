@@ -11,6 +11,7 @@
 #include "engine/registration/range_image.hpp"
 #include "engine/types/features.hpp"
 #include "engine/types/point_cloud.hpp"
+#include "engine/types/query.hpp"
 
 namespace landmarkdb {
 
@@ -20,12 +21,12 @@ struct CleanQuery {
   CloudCounts counts;
   double spacing_m = 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the points: where two poses are compared
-  RangeImage ranges;                                 // free space as the sensor saw it
+  std::vector<RangeImage> ranges;  // free space as the sensor saw it, one for each viewpoint
 };
 
-// Cleans a query. Its viewpoint is the sensor frame's zero unless the cloud has one.
-// Throws what `context.check` does.
-CleanQuery clean_query(PointCloud cloud, const RunContext& context = {});
+// Cleans a query and lays its clouds together (join_clouds, which says what is thrown).
+CleanQuery clean_query(std::vector<QueryCloud> clouds, const RunContext& context = {});
+CleanQuery clean_query(const PointCloud& cloud, const RunContext& context = {});  // one alone
 
 // The query as an entry of one resolution sees it.
 struct QueryView {

@@ -29,6 +29,8 @@ struct VerdictOptions {
   double rival_share = 0.88;
   // So does one against which hardly more of the points that tell the two apart speak for the best,
   // and one in reach (of this share) against which less than two thirds do (0.3 = 0.65 - 0.35).
+  // A confidence from which on that is not asked: the contrast is in it, among the rest.
+  double sure_confidence = 0.85;
   double least_contrast = 0.1;
   double reach_share = 0.65;
   double least_contrast_in_reach = 0.3;

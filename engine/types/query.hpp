@@ -12,6 +12,7 @@
 #include "engine/base/stage_timings.hpp"
 #include "engine/types/explanation.hpp"
 #include "engine/types/features.hpp"
+#include "engine/types/point_cloud.hpp"
 #include "engine/types/scene_view.hpp"
 
 namespace landmarkdb {
@@ -25,7 +26,18 @@ enum class Solver { kSimilarity, kPnp };
 // The most a question may ask for with `top`: nobody reads more, and each is half a kilobyte.
 inline constexpr std::uint32_t kMostHypotheses = 100;
 
-// A question about one cloud. Angles in radians, lengths in metres.
+// The most clouds one question may be about.
+inline constexpr std::size_t kMostQueryClouds = 64;
+
+// One of the clouds of a question, with its pose in the frame they share: the frame the answer's
+// T_scene_sensor is of. A lone cloud's own frame is that frame. Seen from its own zero unless the
+// cloud has a viewpoint.
+struct QueryCloud {
+  PointCloud cloud;
+  Eigen::Isometry3d T_query_cloud = Eigen::Isometry3d::Identity();
+};
+
+// A question about a cloud, or several. Angles in radians, lengths in metres.
 struct QueryOptions {
   Profile profile = Profile::kRobust;
   std::vector<std::string> scenes;  // empty: all
@@ -64,10 +76,11 @@ struct Fit {
   double free_space_violation = 0.0;
   double explained = 0.0;
   double coverage = 0.0;
-  double quality = 0.0;   // 0..1: overlap and agreement as one figure; what poses are ranked by
-  double margin = 0.0;    // 0..1: how far ahead of the best different pose
-  double agreeing = 0.0;  // keypoints of which a descriptor pair agrees with the pose
-  double contrast = 0.0;  // -1..1: of the points that fit the pose and its nearest rival unlike
+  double quality = 0.0;       // 0..1: overlap and agreement as one figure; what poses are ranked by
+  double margin = 0.0;        // 0..1: how far ahead of the best different pose
+  double agreeing = 0.0;      // keypoints of which a descriptor pair agrees with the pose
+  double contrast = 0.0;      // -1..1: of the points that fit the pose and its nearest rival unlike
+  double contradicted = 0.0;  // of the directions predicted: amid others that are contradicted too
   double observability = 0.0;  // 0..1: weakest of the six freedoms against the strongest
 };
 

@@ -1,4 +1,7 @@
+#include <array>
+#include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <numbers>
 #include <sstream>
 #include <vector>
@@ -32,6 +35,26 @@ TEST(Query, FindsWhereTheCameraStood) {
     EXPECT_EQ(answer["hypotheses"][0]["scene"], "room");
     EXPECT_THAT(matrix(answer["hypotheses"][0]["T_scene_sensor"]), PoseNear(T, kNear_m, kNear_rad));
   }
+}
+
+TEST(Query, FindsTwoViewsWithTheirPosesAsOne) {
+  ServerProcess server(site().db);
+  const std::array<Eigen::Isometry3d, 2> T{make_view_pose(site().room, 1),
+                                           make_view_pose(site().room, 2)};
+  std::vector<std::string> arguments{"--json", "query"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string name = "set" + std::to_string(i);
+    arguments.push_back(site().view(name, site().room, T[i]));
+    const std::filesystem::path pose = site().folder / (name + ".txt");
+    std::ofstream(pose) << std::setprecision(17)
+                        << (T[0].inverse() * T[i]).matrix().format(Eigen::IOFormat(17)) << "\n";
+    arguments.push_back("--pose");
+    arguments.push_back(pose);
+  }
+  const Outcome outcome = server.client(arguments);
+  ASSERT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(matrix(outcome.json()["hypotheses"][0]["T_scene_sensor"]),
+              PoseNear(T[0], kNear_m, kNear_rad));
 }
 
 TEST(Query, ChainMultipliesOutExactly) {

@@ -18,10 +18,10 @@ ConnectOptions at(const FakeServer& server) {
   return options;
 }
 
-PointCloud one_point() {
-  PointCloud cloud;
-  cloud.points = {{1.0F, 2.0F, 3.0F}};
-  return cloud;
+std::vector<QueryCloud> one_point() {
+  QueryCloud one;
+  one.cloud.points = {{1.0F, 2.0F, 3.0F}};
+  return {one};
 }
 
 // Answers one request with what `answer` makes of it.
@@ -78,10 +78,11 @@ TEST(Client, RefusesACloudWithMorePointsThanTheServerTakes) {
     peer.receive();
   });
   Client client(at(server), {});
-  PointCloud cloud;
-  cloud.points.resize(50'001, Eigen::Vector3f::Zero());
+  std::vector<QueryCloud> clouds(2);  // together one too many
+  clouds[0].cloud.points.resize(50'000, Eigen::Vector3f::Zero());
+  clouds[1].cloud.points.resize(1, Eigen::Vector3f::Zero());
   try {
-    client.query(cloud, {}, {});
+    client.query(clouds, {}, {});
     FAIL() << "sent";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kResourceExhausted);

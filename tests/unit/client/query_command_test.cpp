@@ -52,6 +52,16 @@ TEST(QueryOptionsFromArguments, RefuseWhatIsNoNumber) {
   EXPECT_THROW(query_options(arguments), cli::UsageError);
 }
 
+TEST(QueryCloudsFromArguments, WantNoPoseOrOneForEachCloud) {
+  QueryArguments arguments;
+  arguments.clouds = {"a.ply", "b.ply"};
+  arguments.poses = {"a.txt"};
+  EXPECT_THROW(load_query(arguments), cli::UsageError);
+  arguments.poses.clear();
+  arguments.viewpoints = {"0,0,0"};
+  EXPECT_THROW(load_query(arguments), cli::UsageError);
+}
+
 // The whole parser, as main() sets it up.
 class QueryCommandLine : public ::testing::Test {
  protected:
@@ -76,6 +86,13 @@ TEST_F(QueryCommandLine, TakesOptionsOnEitherSideOfTheCommand) {
   EXPECT_TRUE(program_.options.json);
   EXPECT_EQ(program_.options.server, "unix:/x");
   EXPECT_TRUE(program_.action);
+}
+
+TEST_F(QueryCommandLine, TakesCloudsAndPosesInAnyOrder) {
+  parse({"query", "a.ply", "--pose", "a.txt", "b.ply", "--scene", "lobby", "--pose", "b.txt"});
+  const CLI::App* command = app_.get_subcommand("query");
+  EXPECT_EQ(command->get_option("CLOUD")->results(), (std::vector<std::string>{"a.ply", "b.ply"}));
+  EXPECT_EQ(command->get_option("--pose")->results(), (std::vector<std::string>{"a.txt", "b.txt"}));
 }
 
 TEST_F(QueryCommandLine, ChoosesTheNestedCommandThatWasNamed) {

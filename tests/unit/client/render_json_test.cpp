@@ -77,6 +77,7 @@ TEST(QueryJson, HasTheDocumentedKeysInTheDocumentedOrder) {
                           "coverage",
                           "quality",
                           "contrast",
+                          "contradicted",
                           "agreeing"));
   EXPECT_THAT(
       keys(json["query"]),

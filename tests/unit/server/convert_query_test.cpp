@@ -42,6 +42,63 @@ v1::QueryOptions full_options() {
   return message;
 }
 
+v1::QueryRequest two_clouds() {
+  v1::QueryRequest request;
+  for (int i = 0; i < 2; ++i) {
+    v1::Cloud& cloud = *request.add_clouds();
+    cloud.set_encoding(v1::POINT_ENCODING_FLOAT32);
+    cloud.set_points(1);
+    cloud.set_xyz(std::string(12, '\0'));
+    const Eigen::Isometry3d T(Eigen::Translation3d(0, 0, i));
+    for (const double number : to_row_major(T.matrix())) request.add_t_query_clouds(number);
+  }
+  return request;
+}
+
+std::string field_refused(const v1::QueryRequest& request) {
+  try {
+    PointAllowance allowance;
+    clouds_from_proto(request, allowance);
+  } catch (const Error& error) {
+    return error.field();
+  }
+  return "none";
+}
+
+TEST(QueryCloudsFromProto, CarryTheirPoses) {
+  PointAllowance allowance;
+  const std::vector<QueryCloud> clouds = clouds_from_proto(two_clouds(), allowance);
+  ASSERT_THAT(clouds, SizeIs(2));
+  EXPECT_EQ(clouds[1].T_query_cloud.translation(), Eigen::Vector3d(0, 0, 1));
+  EXPECT_THAT(clouds[1].cloud.points, SizeIs(1));
+}
+
+TEST(QueryCloudsFromProto, StandAtTheIdentityWithoutPoses) {
+  v1::QueryRequest request = two_clouds();
+  request.clear_t_query_clouds();
+  PointAllowance allowance;
+  EXPECT_TRUE(clouds_from_proto(request, allowance)[1].T_query_cloud.matrix().isIdentity(0.0));
+}
+
+TEST(QueryCloudsFromProto, NameWhatIsWrong) {
+  EXPECT_EQ(field_refused(two_clouds()), "none");
+  EXPECT_EQ(field_refused({}), "clouds");
+  v1::QueryRequest request = two_clouds();
+  request.add_t_query_clouds(1.0);
+  EXPECT_EQ(field_refused(request), "t_query_clouds");
+  request = two_clouds();
+  request.set_t_query_clouds(16, 2.0);  // no rotation
+  EXPECT_EQ(field_refused(request), "t_query_clouds[1]");
+  request = two_clouds();
+  request.mutable_clouds(1)->set_xyz("short");
+  EXPECT_EQ(field_refused(request), "clouds[1].xyz");
+  request = two_clouds();
+  while (request.clouds_size() <= static_cast<int>(kMostQueryClouds)) {
+    *request.add_clouds() = request.clouds(0);
+  }
+  EXPECT_EQ(field_refused(request), "clouds");
+}
+
 TEST(QueryOptionsFromProto, GivesTheDefaultsForAnEmptyMessage) {
   const QueryOptions options = from_proto(v1::QueryOptions());
   const QueryOptions defaults;
@@ -167,6 +224,7 @@ TEST(QueryResultToProto, CarriesEveryFieldAndTheDerivedForms) {
                     .margin = 0.2,
                     .agreeing = 17.0,
                     .contrast = 0.6,
+                    .contradicted = 0.05,
                     .observability = 0.3};
   hypothesis.covariance(0, 5) = 0.125;
   result.hypotheses = {hypothesis};
@@ -200,6 +258,7 @@ TEST(QueryResultToProto, CarriesEveryFieldAndTheDerivedForms) {
   EXPECT_EQ(h.correspondences().inliers(), 5U);
   EXPECT_EQ(h.fit().observability(), 0.3);
   EXPECT_EQ(h.fit().contrast(), 0.6);
+  EXPECT_EQ(h.fit().contradicted(), 0.05);
   EXPECT_EQ(h.fit().agreeing(), 17.0);
   ASSERT_THAT(h.covariance(), SizeIs(36));
   EXPECT_EQ(h.covariance(5), 0.125);

@@ -43,7 +43,7 @@ Points patch(const Eigen::Vector2f& low, const Eigen::Vector2f& high, float dept
 SightCounts compare(const RangeImage& image,
                     const Points& surface,
                     const Eigen::Isometry3d& T = Eigen::Isometry3d::Identity()) {
-  return image.compare(surface, T, kPatch_m, kTolerance);
+  return image.compare({surface}, T, kPatch_m, kTolerance);
 }
 
 TEST(RangeImage, AgreesWithTheSurfaceThatWasMeasured) {
@@ -213,6 +213,37 @@ TEST(RangeImage, HoldsAgainstCloudsThatHoldNothing) {
   }
   const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
   EXPECT_EQ(compare(image, {{nan, 0, 2}, {0, 0, 0}}).predicted(), 0U);
+}
+
+// A camera before the wall at 2 m, and a screen at 1 m that it did not see.
+TEST(RangeImage, TellsAThingThatIsNotThereFromASilhouette) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  Points screen = patch({-1, -1}, {1, 1}, 2.0F);
+  const Points near = patch({-0.2F, -0.2F}, {0.2F, 0.2F}, 1.0F);
+  screen.insert(screen.end(), near.begin(), near.end());
+  const SightCounts area = compare(image, screen);
+  EXPECT_GT(area.crossed, 200U);            // 23 by 23 deg
+  EXPECT_GT(2 * area.solid, area.crossed);  // but its rim
+  EXPECT_LT(area.solid, area.crossed);
+  Points rod = patch({-1, -1}, {1, 1}, 2.0F);
+  for (float y = -0.5F; y <= 0.5F; y += 0.01F) rod.emplace_back(0.0F, y, 1.8F);
+  constexpr float kThin_m = 0.02F;  // less than a cell at that range
+  const SightCounts line = image.compare({rod}, Eigen::Isometry3d::Identity(), kThin_m, kTolerance);
+  EXPECT_GT(line.crossed, 20U);
+  EXPECT_EQ(line.solid, 0U);
+}
+
+TEST(RangeImage, SaysNothingOfTheBackOfASurface) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  const Points behind = patch({-1, -1}, {1, 1}, 2.6F);
+  const Points facing(behind.size(), Eigen::Vector3f(0, 0, -1));
+  const Points away(behind.size(), Eigen::Vector3f(0, 0, 1));
+  const Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  EXPECT_GT(image.compare({behind, facing}, T, kPatch_m, kTolerance).hidden, 500U);
+  EXPECT_EQ(image.compare({behind, away}, T, kPatch_m, kTolerance).predicted(), 0U);
+  // One that stands in the way was looked through, whichever side it shows.
+  const Points before = patch({-1, -1}, {1, 1}, 1.0F);
+  EXPECT_GT(image.compare({before, away}, T, kPatch_m, kTolerance).crossed, 500U);
 }
 
 }  // namespace

@@ -139,18 +139,18 @@ TEST(MeasureSight, TurnsCountsIntoShares) {
       if (i > 0) entry.emplace_back(0.5F * seen.back());
     }
   }
-  const RangeImage ranges(seen, Eigen::Vector3f::Zero(), 0.0175);
+  const std::vector<RangeImage> ranges{RangeImage(seen, Eigen::Vector3f::Zero(), 0.0175)};
   Evidence evidence;
-  measure_sight(ranges, entry, Eigen::Isometry3d::Identity(), kCell_m, {}, evidence);
+  measure_sight(ranges, {entry}, Eigen::Isometry3d::Identity(), kCell_m, {}, evidence);
   EXPECT_NEAR(evidence.explained, 0.5, 0.06);
   EXPECT_NEAR(evidence.crossed, 0.5, 0.06);
   EXPECT_GT(evidence.coverage, 0.97);
   const double half_right = evidence.explained;
-  measure_sight(ranges, {}, Eigen::Isometry3d::Identity(), kCell_m, {}, evidence);
+  measure_sight(ranges, SightSurface{}, Eigen::Isometry3d::Identity(), kCell_m, {}, evidence);
   EXPECT_LE(evidence.explained, 0.5) << "nothing seen is nothing proved";
   EXPECT_EQ(evidence.crossed, 0.0);
   EXPECT_EQ(evidence.coverage, 0.0);
-  measure_sight(ranges, seen, Eigen::Isometry3d::Identity(), kCell_m, {}, evidence);
+  measure_sight(ranges, {seen}, Eigen::Isometry3d::Identity(), kCell_m, {}, evidence);
   EXPECT_GT(evidence.explained, 0.95);
   EXPECT_GT(evidence.explained, half_right);
 }

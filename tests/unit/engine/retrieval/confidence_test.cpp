@@ -36,6 +36,7 @@ TEST(ConfidenceOf, RisesWithWhatSpeaksForAPoseAndFallsWithWhatSpeaksAgainst) {
   EXPECT_LT(less(&Evidence::crossed, 0.2), base);
   EXPECT_LT(less(&Evidence::observability, 0.0), base);
   EXPECT_LT(less(&Evidence::agreeing, 2.0), base);
+  EXPECT_LT(less(&Evidence::contradicted, 0.05), base);
 }
 
 TEST(ConfidenceOf, OfAnObjectAsksForQualityAndCoverageToo) {
@@ -73,6 +74,7 @@ TEST(ConfidenceOf, IsAProbabilityForAnyEvidence) {
   }
   Evidence nothing;
   nothing.contrast = 0.0;
+  nothing.crossed = nothing.contradicted = 0.5;
   EXPECT_LT(confidence_of(nothing, 0.0, 1.0), 0.001);
   EXPECT_GT(confidence_of(convincing(), 0.9, 1.0), 0.9);
 }

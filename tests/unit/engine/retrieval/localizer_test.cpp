@@ -282,6 +282,29 @@ TEST(Localizer, KeepsItsMillimetresFarFromZero) {
   EXPECT_EQ(surveyed->query(frame.cloud, prior, {}).status, QueryStatus::kLocalized);
 }
 
+TEST(Localizer, FindsSeveralViewsWithTheirPosesAsOne) {
+  const Frame first = frame_in(lobby().scene, 1);
+  const Frame second = frame_in(lobby().scene, 2);
+  std::vector<QueryCloud> clouds(2);
+  clouds[0].cloud = first.cloud;
+  clouds[1].cloud = second.cloud;
+  clouds[1].T_query_cloud = first.T_scene_sensor.inverse() * second.T_scene_sensor;
+  const QueryResult answer = lobby().localizer->query(clouds, {}, {});
+  ASSERT_EQ(answer.status, QueryStatus::kLocalized) << answer.reason;
+  EXPECT_THAT(answer.hypotheses[0].T_scene_sensor,
+              PoseNear(first.T_scene_sensor, kNear_m, kNear_rad));
+  EXPECT_EQ(answer.query.points, first.cloud.size() + second.cloud.size());
+  EXPECT_LT(answer.hypotheses[0].fit.free_space_violation, 0.05);  // of each view's own rays
+}
+
+TEST(Localizer, DoesNotBelieveViewsWhosePosesToEachOtherAreWrong) {
+  std::vector<QueryCloud> clouds(2);
+  clouds[0].cloud = frame_in(lobby().scene, 1).cloud;
+  clouds[1].cloud = frame_in(lobby().scene, 2).cloud;
+  clouds[1].T_query_cloud = Eigen::Translation3d(2.0, -1.0, 1.5);
+  EXPECT_NE(lobby().localizer->query(clouds, {}, {}).status, QueryStatus::kLocalized);
+}
+
 TEST(Localizer, LooksOnlyNearThePrior) {
   const Frame frame = frame_in(lobby().scene, 1);
   QueryOptions options;
