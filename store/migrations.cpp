@@ -18,6 +18,25 @@ std::vector<std::string> pending_migrations(int version, std::span<const Migrati
   return names;
 }
 
+namespace {
+
+// Inside a transaction of the caller's.
+void apply(const sqlite::Database& database, const Migration& migration) {
+  database.execute(std::string(migration.sql));
+  database.execute("PRAGMA application_id = " + std::to_string(kApplicationId));
+  database.execute("PRAGMA user_version = " + std::to_string(migration.version));
+}
+
+}  // namespace
+
+void create_schema(const sqlite::Database& database, std::span<const Migration> migrations) {
+  sqlite::Transaction transaction(database, sqlite::Transaction::Kind::kWrite);
+  for (const Migration& migration : migrations) {
+    if (user_version(database) < migration.version) apply(database, migration);
+  }
+  transaction.commit();
+}
+
 std::vector<std::string> apply_migrations(const sqlite::Database& database,
                                           std::span<const Migration> migrations) {
   std::vector<std::string> applied;
@@ -25,9 +44,7 @@ std::vector<std::string> apply_migrations(const sqlite::Database& database,
     sqlite::Transaction transaction(database, sqlite::Transaction::Kind::kWrite);
     // Looked up inside the transaction: another process may have been faster.
     if (user_version(database) >= migration.version) continue;
-    database.execute(std::string(migration.sql));
-    database.execute("PRAGMA application_id = " + std::to_string(kApplicationId));
-    database.execute("PRAGMA user_version = " + std::to_string(migration.version));
+    apply(database, migration);
     transaction.commit();
     applied.emplace_back(migration.name);
   }

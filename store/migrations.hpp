@@ -30,6 +30,10 @@ int latest_version(std::span<const Migration> migrations);
 // The migrations a database of `version` still lacks, by name.
 std::vector<std::string> pending_migrations(int version, std::span<const Migration> migrations);
 
+// Brings a new database to the last version in one transaction: nobody ever sees one of an older
+// version that nobody made, also where two make it at once or one is killed on the way.
+void create_schema(const sqlite::Database& database, std::span<const Migration> migrations);
+
 // Applies what is missing, in order, each in one transaction together with its version number. A
 // failing one leaves the database at the version before it. Returns the names of those applied.
 std::vector<std::string> apply_migrations(const sqlite::Database& database,

@@ -172,7 +172,7 @@ std::unique_ptr<Database> create_or_open_database(const std::string& path,
   auto database = std::make_unique<Database>(path, OpenMode::kCreate, options.busy_timeout);
   database->execute("PRAGMA page_size = " + std::to_string(kPageBytes));
   prepare_for_writing(*database, options);
-  apply_migrations(*database, all_migrations());
+  create_schema(*database, all_migrations());
   require_version(*database);
   return database;
 }
