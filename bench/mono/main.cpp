@@ -26,6 +26,7 @@ struct Settings {
   std::size_t poses = 1000, scenes = 300, models = 100;
   std::uint64_t seed = 10000;
   std::string json_file;
+  std::string only;  // rows whose name has this in it
 };
 
 json pose_rows(const Settings& settings) {
@@ -124,6 +125,7 @@ json recognition_rows(const Settings& settings) {
               "p95 ms",
               "med mm");
   for (const Case& one : kCases) {
+    if (std::string(one.name).find(settings.only) == std::string::npos) continue;
     const std::vector<Outcome> outcomes = run_recognition(options_of(one, settings, settings.seed));
     struct Group {
       std::size_t least, most, n = 0, right = 0, accepted = 0;
@@ -231,6 +233,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--models", settings.models, "models in the catalogue")->capture_default_str();
   app.add_option("--scenes", settings.scenes, "scenes a row")->capture_default_str();
+  app.add_option("--only", settings.only, "rows of `recognition` whose name has this in it");
   app.add_option("--poses", settings.poses, "poses a column")->capture_default_str();
   app.add_option("--json", settings.json_file, "write the figures to FILE");
   app.add_subcommand("poses",

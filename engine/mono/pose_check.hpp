@@ -37,6 +37,9 @@ struct MonoCandidate {
   bool ambiguous = false;  // `twin`, the other tilt of a plane, fits about as well
   RigidPose twin{};
   double twin_odds = 0.0;  // of the twin against the pose
+  // How much better it explains the image than the mirror image of its model does; none: the mirror
+  // image does not explain it at all.
+  std::optional<double> mirror_margin{};
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
   // Lower is better: edges decide where the points do not.

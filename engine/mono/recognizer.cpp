@@ -12,6 +12,7 @@
 #include "engine/mono/candidate_pool.hpp"
 #include "engine/mono/find_features.hpp"
 #include "engine/mono/image_quads.hpp"
+#include "engine/mono/mirror_rival.hpp"
 #include "engine/mono/quad_index.hpp"
 #include "engine/mono/rivals.hpp"
 #include "engine/mono/search_model.hpp"
@@ -58,7 +59,10 @@ void check_request(const ImageFeatures& features,
 class Recognizer::Impl {
  public:
   explicit Impl(std::shared_ptr<const MonoCatalog> catalog)
-      : catalog_(std::move(catalog)), models_(prepare(*catalog_)), index_(models_) {}
+      : catalog_(std::move(catalog)),
+        models_(prepare(*catalog_)),
+        mirrors_(mirror_images(*catalog_)),
+        index_(models_) {}
 
   RecognizeResult recognize(const ImageFeatures& features,
                             const Camera& camera,
@@ -72,6 +76,12 @@ class Recognizer::Impl {
       models.push_back(prepare_model(entry.record));
     return models;
   }
+  static std::vector<SearchModel> mirror_images(const MonoCatalog& catalog) {
+    std::vector<SearchModel> mirrors;
+    for (const MonoCatalogEntry& entry : catalog.entries)
+      mirrors.push_back(prepare_mirror(*entry.record));
+    return mirrors;
+  }
   std::vector<char> wanted(const RecognizeOptions& options) const;
   bool search(const ImageView& image,
               std::span<const char> wanted,
@@ -82,6 +92,7 @@ class Recognizer::Impl {
 
   std::shared_ptr<const MonoCatalog> catalog_;
   std::vector<SearchModel> models_;
+  std::vector<SearchModel> mirrors_;  // of the models, in their order
   QuadIndex index_;
 };
 
@@ -174,7 +185,8 @@ RecognizeResult Recognizer::Impl::recognize(const ImageFeatures& features,
   if (!complete) result.warnings.push_back("search_cut_short");
   {
     const StageTimer timer(result.timings.refine);
-    settle_rivals(models_, image, camera, check, pool, run);
+    PoseCheck mirrors(mirrors_, image, edges, camera, check_options);
+    settle_rivals(models_, image, camera, check, mirrors, pool, run);
   }
   write_answer(models_, image, edges, pool.candidates(), options, scale, result);
   if (result.status == RecognizeStatus::kNotFound && !complete) {

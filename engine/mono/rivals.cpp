@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "engine/mono/mirror_rival.hpp"
 #include "engine/mono/point_pose.hpp"
 #include "engine/mono/refine_pose.hpp"
 
@@ -13,6 +14,7 @@ namespace landmarkdb {
 namespace {
 
 constexpr std::size_t kSettled = 12;   // candidates that are brought to rest
+constexpr std::size_t kMirrored = 3;   // candidates that are held against mirror images
 constexpr std::size_t kMostKept = 24;  // that are remembered as rivals
 constexpr int kClimbs = 4;             // a grid of six is crossed in as many places, two at a time
 
@@ -123,6 +125,7 @@ void settle_rivals(std::span<const SearchModel> models,
                    const ImageView& image,
                    const Camera& camera,
                    PoseCheck& check,
+                   PoseCheck& mirrors,
                    CandidatePool& pool,
                    const RunContext& run) {
   std::vector<MonoCandidate>& candidates = pool.candidates();
@@ -146,6 +149,12 @@ void settle_rivals(std::span<const SearchModel> models,
   }
   sort_by_rank(candidates, kMostKept);
   prefer_front(models, candidates);
+  for (std::size_t i = 0; i < std::min(kMirrored, candidates.size()); ++i) {
+    const SearchModel& model = models[candidates[i].model];
+    if (is_flat(model.model())) continue;  // it is its own mirror image, and has its twin above
+    run.check("refine");
+    candidates[i].mirror_margin = mirror_margin(model, candidates[i], mirrors);
+  }
 }
 
 }  // namespace landmarkdb

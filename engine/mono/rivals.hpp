@@ -14,6 +14,7 @@ void settle_rivals(std::span<const SearchModel> models,
                    const ImageView& image,
                    const Camera& camera,
                    PoseCheck& check,
+                   PoseCheck& mirrors,
                    CandidatePool& pool,
                    const RunContext& run);
 

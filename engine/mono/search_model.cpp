@@ -9,7 +9,6 @@ namespace landmarkdb {
 namespace {
 
 constexpr double kLookalikeShare = 0.4;  // of the points: fewer make no rival
-constexpr std::size_t kMostLookalikes = 48;
 
 }  // namespace
 
@@ -17,7 +16,8 @@ bool SearchModel::linked(std::uint32_t a, std::uint32_t b) const {
   return std::binary_search(neighbours[a].begin(), neighbours[a].end(), b);
 }
 
-SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record) {
+SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record,
+                          std::size_t most_lookalikes) {
   const MonoModel& model = record->model;
   SearchModel result{.record = record,
                      .visibility = ModelVisibility(model),
@@ -59,7 +59,9 @@ SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record) {
     }
     result.seen.push_back(std::move(ids));
   }
-  result.lookalikes = find_lookalikes(model, kLookalikeShare, kMostLookalikes);
+  if (most_lookalikes > 0) {
+    result.lookalikes = find_lookalikes(model, kLookalikeShare, most_lookalikes);
+  }
   return result;
 }
 

@@ -32,7 +32,11 @@ struct SearchModel {
   bool linked(std::uint32_t a, std::uint32_t b) const;
 };
 
-SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record);
+// At most so many motions onto itself are kept as lookalikes.
+inline constexpr std::size_t kMostLookalikes = 48;
+
+SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record,
+                          std::size_t most_lookalikes = kMostLookalikes);
 
 // The number of the model view nearest to a direction (unit, from the object to the camera).
 std::size_t nearest_view(const Eigen::Vector3d& direction);

@@ -15,6 +15,7 @@
 #include "engine/base/error.hpp"
 #include "engine/base/random.hpp"
 #include "engine/geometry/pose.hpp"
+#include "engine/mono/mirror_rival.hpp"
 #include "engine/mono/search_model.hpp"
 #include "tests/support/make_mono_scene.hpp"
 
@@ -131,15 +132,36 @@ TEST(Recognizer, LooksForTheNamedModelsOnly) {
   EXPECT_THAT(message_of([&] { ask(scene, {.models = {"castle"}}); }), HasSubstr("\"castle\""));
 }
 
+// From far away a body's mirror image with front and back exchanged looks like the body: half of a
+// large one's points, those at its rim, fall into place.
 TEST(Recognizer, DoesNotTakeAMirroredModelForIt) {
-  auto mirrored = std::make_shared<MonoModelRecord>(*catalog()->entries[3].record);
-  for (ModelFeature& point : mirrored->model.points) point.xyz.x() = -point.xyz.x();
-  for (auto& face : mirrored->model.faces) std::reverse(face.begin(), face.end());
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const MonoScene scene =
-        make_mono_scene(mirrored.get(), {.seed = seed, .features = 30, .missing = 0.0});
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    auto mirrored = std::make_shared<MonoModelRecord>(
+        *catalog()->entries[seed % catalog()->entries.size()].record);
+    for (ModelFeature& point : mirrored->model.points) point.xyz.x() = -point.xyz.x();
+    for (auto& face : mirrored->model.faces) std::reverse(face.begin(), face.end());
+    const MonoScene scene = make_mono_scene(mirrored.get(),
+                                            {.seed = seed,
+                                             .features = seed % 2 == 0 ? 30U : 60U,
+                                             .missing = seed % 3 == 0 ? 0.0 : 0.3,
+                                             .near_m = 0.9,
+                                             .far_m = 2.0});
     const RecognizeResult result = ask(scene);
     EXPECT_EQ(result.status, RecognizeStatus::kNotFound) << seed;
+  }
+}
+
+TEST(MirrorPose, LooksTheSameFromFarAway) {
+  const MonoModelRecord& record = *catalog()->entries[4].record;
+  const SearchModel model = prepare_model(catalog()->entries[4].record);
+  const SearchModel mirror = prepare_mirror(record);
+  const RigidPose pose{rotation_from_vector({0.4, -1.1, 0.7}), Eigen::Vector3d(3.0, -2.0, 500.0)};
+  const RigidPose other = mirror_pose(model, pose);
+  EXPECT_NEAR(other.R.determinant(), 1.0, 1e-12);
+  for (std::size_t i = 0; i < model.points.size(); ++i) {
+    const Eigen::Vector3d a = pose * model.points[i].xyz, b = other * mirror.points[i].xyz;
+    // 0.1 m of depth at 500 m, half a metre off the axis at most: 1e-6 of a ray.
+    EXPECT_NEAR((a.head<2>() / a.z() - b.head<2>() / b.z()).norm(), 0.0, 5e-6);
   }
 }
 

@@ -1,0 +1,51 @@
+#include "engine/mono/mirror_rival.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace landmarkdb {
+namespace {
+
+Eigen::Vector3d reflected(const Eigen::Vector3d& xyz) { return {-xyz.x(), xyz.y(), xyz.z()}; }
+
+}  // namespace
+
+SearchModel prepare_mirror(const MonoModelRecord& record) {
+  auto mirror = std::make_shared<MonoModelRecord>();
+  mirror->model = record.model;
+  MonoModel& model = mirror->model;
+  for (ModelFeature& point : model.points) {
+    point.xyz = reflected(point.xyz);
+    if (point.normal) point.normal = reflected(*point.normal);
+  }
+  for (ModelCircle& circle : model.circles) {
+    circle.center = reflected(circle.center);
+    circle.normal = reflected(circle.normal);
+  }
+  for (std::vector<std::uint32_t>& face : model.faces) std::reverse(face.begin(), face.end());
+  return prepare_model(mirror, 0);
+}
+
+RigidPose mirror_pose(const SearchModel& model, const RigidPose& pose) {
+  const Eigen::Vector3d eye = -(pose.R.transpose() * pose.t);
+  const Eigen::Vector3d sight = (eye - model.center).normalized();
+  const Eigen::Matrix3d S = Eigen::Matrix3d::Identity() - 2.0 * sight * sight.transpose();
+  Eigen::Matrix3d to_mirror = S;
+  to_mirror.col(0) = -to_mirror.col(0);  // the mirror image's points are x -> -x already
+  return {pose.R * to_mirror, pose.R * (model.center - S * model.center) + pose.t};
+}
+
+std::optional<double> mirror_margin(const SearchModel& model,
+                                    const MonoCandidate& candidate,
+                                    PoseCheck& mirrors) {
+  const RigidPose start = mirror_pose(model, candidate.pose);
+  const std::span<const Match> found = mirrors.look(candidate.model, start);
+  if (found.empty()) return std::nullopt;
+  const std::vector<Match> matches(found.begin(), found.end());
+  std::optional<MonoCandidate> mirror = mirrors.settle(candidate.model, start, matches);
+  if (!mirror) return std::nullopt;
+  mirrors.settle_on_edges(*mirror);
+  return mirror->rank() - candidate.rank();
+}
+
+}  // namespace landmarkdb
