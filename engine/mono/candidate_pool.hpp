@@ -24,6 +24,9 @@ class CandidatePool {
   // Looks at a pose and, where it passes and is new, settles and keeps it.
   void try_pose(std::uint32_t model, const RigidPose& pose);
 
+  // Each model may be settled as often again: for a search of another kind.
+  void renew_allowance() { settled_.assign(models_.size(), 0); }
+
   void add(MonoCandidate candidate);
   bool beyond_doubt() const { return beyond_doubt_; }
   std::vector<MonoCandidate>& candidates() { return candidates_; }

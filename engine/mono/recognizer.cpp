@@ -10,6 +10,7 @@
 #include "engine/base/error.hpp"
 #include "engine/mono/answer.hpp"
 #include "engine/mono/candidate_pool.hpp"
+#include "engine/mono/corner_search.hpp"
 #include "engine/mono/find_features.hpp"
 #include "engine/mono/image_quads.hpp"
 #include "engine/mono/mirror_rival.hpp"
@@ -181,7 +182,18 @@ RecognizeResult Recognizer::Impl::recognize(const ImageFeatures& features,
                              .scale = scale};
   PoseCheck check(models_, image, edges, camera, check_options);
   CandidatePool pool(models_, check);
-  const bool complete = search(image, wanted_models, options, run, pool, result.timings);
+  bool complete = search(image, wanted_models, options, run, pool, result.timings);
+  if (!edges.empty() && !pool.beyond_doubt()) {
+    const StageTimer timer(result.timings.verify);
+    complete = search_by_corners(models_,
+                                 features,
+                                 camera,
+                                 edges,
+                                 {options.min_depth_m, options.max_depth_m, wanted_models, scale},
+                                 run,
+                                 pool) &&
+               complete;
+  }
   if (!complete) result.warnings.push_back("search_cut_short");
   {
     const StageTimer timer(result.timings.refine);
