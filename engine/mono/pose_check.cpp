@@ -31,6 +31,23 @@ double turned_apart(double a, double b) {
   return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi));
 }
 
+// Faces have a centroid in the image and arcs an inflexion only where nothing is printed on them or
+// runs across. A type of these that no feature matched is not expected then: what is judged is the
+// corners and circles. True when some were left out.
+bool leave_out_unseen_types(const MonoModel& model,
+                            std::span<const Match> matches,
+                            std::vector<std::uint16_t>& seen) {
+  const std::size_t before = seen.size();
+  for (const FeatureType type : {FeatureType::kCentroid, FeatureType::kInflexion}) {
+    const auto is_of_type = [&](std::uint16_t id) { return model.points[id].type == type; };
+    const bool matched = std::any_of(matches.begin(), matches.end(), [&](const Match& match) {
+      return is_of_type(match.model);
+    });
+    if (!matched) std::erase_if(seen, is_of_type);
+  }
+  return seen.size() != before;
+}
+
 }  // namespace
 
 double log10_binomial_tail(std::size_t trials, std::size_t hits, double p) {
@@ -192,6 +209,7 @@ std::optional<MonoCandidate> PoseCheck::settle(std::uint32_t model,
   if (!refine(model, candidate.pose, &candidate)) return std::nullopt;
   const double depth = (candidate.pose * search.center).z();
   if (!(depth >= options_.min_depth_m) || !(depth <= options_.max_depth_m)) return std::nullopt;
+  const bool all_expected = !leave_out_unseen_types(search.model(), matches_, seen);
   candidate.visible = seen.size();
   candidate.matches = matches_;
   double sum = 0.0;
@@ -204,6 +222,7 @@ std::optional<MonoCandidate> PoseCheck::settle(std::uint32_t model,
   }
   candidate.rms_px = std::sqrt(sum / static_cast<double>(candidate.matches.size()));
   candidate.log10_nfa = score(candidate, seen);
+  if (!all_expected) candidate.log10_nfa += std::log10(2.0);  // two ways to count were tried
   if (!edges_.empty()) {
     constexpr double kStep_px = 12.0;
     constexpr std::size_t kMostSamples = 200;
