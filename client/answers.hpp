@@ -76,6 +76,8 @@ struct Stats {
   double query_ms_mean = 0.0, query_ms_max = 0.0;
   std::uint64_t models = 0, recognized = 0, recognize_not_found = 0;
   double recognize_ms_mean = 0.0, recognize_ms_max = 0.0;
+  std::uint64_t tracks_open = 0, track_frames = 0, track_frames_seen = 0;
+  double track_ms_mean = 0.0, track_ms_max = 0.0;
   std::uint64_t resident_bytes = 0, database_bytes = 0, reloads_total = 0;
 };
 

@@ -6,6 +6,7 @@
 #include "client/connection.hpp"
 #include "client/convert.hpp"
 #include "client/convert_recognition.hpp"
+#include "client/convert_track.hpp"
 #include "engine/base/error.hpp"
 
 namespace landmarkdb::client {
@@ -102,6 +103,29 @@ RecognizeAnswer Client::recognize(const RecognizeInput& input,
   *request.mutable_recognize() = to_proto(input, options);
   return from_proto(
       state_->call(std::move(request), v1::Envelope::kRecognizeResult, context).recognize_result());
+}
+
+std::uint32_t Client::open_track(const TrackSetup& setup, const RunContext& context) {
+  v1::Envelope request;
+  *request.mutable_track_open() = to_proto(setup);
+  return state_->call(std::move(request), v1::Envelope::kTrackOpenReply, context)
+      .track_open_reply()
+      .track();
+}
+
+TrackedFrame Client::track(std::uint32_t track,
+                           const TrackInput& input,
+                           const RunContext& context) {
+  v1::Envelope request;
+  *request.mutable_track_frame() = to_proto(input, track);
+  return from_proto(state_->call(std::move(request), v1::Envelope::kTrackFrameResult, context)
+                        .track_frame_result());
+}
+
+void Client::close_track(std::uint32_t track, const RunContext& context) {
+  v1::Envelope request;
+  request.mutable_track_close()->set_track(track);
+  state_->call(std::move(request), v1::Envelope::kTrackCloseReply, context);
 }
 
 std::vector<ModelInfo> Client::models(const RunContext& context) {

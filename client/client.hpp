@@ -8,6 +8,7 @@
 #include "client/answers.hpp"
 #include "client/connect_options.hpp"
 #include "client/recognition.hpp"
+#include "client/tracking.hpp"
 #include "engine/base/run_context.hpp"
 #include "engine/types/point_cloud.hpp"
 #include "engine/types/query.hpp"
@@ -43,6 +44,12 @@ class Client {
   RecognizeAnswer recognize(const RecognizeInput& input,
                             const RecognizeOptions& options,
                             const RunContext& context);
+
+  // Follows one model from image to image: open, frames in their order, close. Tracks end with the
+  // client. "Lost" is an answer; a frame that is refused leaves the track as it was.
+  std::uint32_t open_track(const TrackSetup& setup, const RunContext& context);
+  TrackedFrame track(std::uint32_t track, const TrackInput& input, const RunContext& context);
+  void close_track(std::uint32_t track, const RunContext& context);
 
   std::vector<ModelInfo> models(const RunContext& context);  // by name
   ModelInfo model(const std::string& name, const RunContext& context);

@@ -215,6 +215,11 @@ Stats from_proto(const v1::StatsReply& stats) {
           .recognize_not_found = stats.recognize_not_found(),
           .recognize_ms_mean = stats.recognize_ms_mean(),
           .recognize_ms_max = stats.recognize_ms_max(),
+          .tracks_open = stats.tracks_open(),
+          .track_frames = stats.track_frames(),
+          .track_frames_seen = stats.track_frames_seen(),
+          .track_ms_mean = stats.track_ms_mean(),
+          .track_ms_max = stats.track_ms_max(),
           .resident_bytes = stats.resident_bytes(),
           .database_bytes = stats.database_bytes(),
           .reloads_total = stats.reloads_total()};

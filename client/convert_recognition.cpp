@@ -26,18 +26,6 @@ v1::FeatureType to_proto(FeatureType type) {
   return v1::FEATURE_TYPE_UNSPECIFIED;
 }
 
-v1::Camera to_proto(const Camera& camera) {
-  v1::Camera message;
-  message.set_width(camera.width);
-  message.set_height(camera.height);
-  message.set_fx(camera.fx);
-  message.set_fy(camera.fy);
-  message.set_cx(camera.cx);
-  message.set_cy(camera.cy);
-  for (const double k : camera.dist) message.add_dist(k);
-  return message;
-}
-
 MonoHypothesis from_proto(const v1::MonoHypothesis& message) {
   if (message.t_camera_object_size() != 16 || message.covariance_size() != 36) {
     refuse("a pose of " + std::to_string(message.t_camera_object_size()) +
@@ -66,24 +54,42 @@ MonoHypothesis from_proto(const v1::MonoHypothesis& message) {
 
 }  // namespace
 
+v1::Camera to_proto(const Camera& camera) {
+  v1::Camera message;
+  message.set_width(camera.width);
+  message.set_height(camera.height);
+  message.set_fx(camera.fx);
+  message.set_fy(camera.fy);
+  message.set_cx(camera.cx);
+  message.set_cy(camera.cy);
+  for (const double k : camera.dist) message.add_dist(k);
+  return message;
+}
+
+v1::ImagePoints to_proto(const std::vector<ImagePoint>& points,
+                         const std::vector<std::array<std::uint32_t, 2>>& links) {
+  v1::ImagePoints message;
+  for (const ImagePoint& point : points) {
+    v1::ImagePoint& added = *message.add_points();
+    added.set_type(to_proto(point.type));
+    added.set_u(point.uv.x());
+    added.set_v(point.uv.y());
+    for (const double direction : point.directions_rad) added.add_directions_rad(direction);
+  }
+  for (const auto& [a, b] : links) {
+    message.add_links(a);
+    message.add_links(b);
+  }
+  return message;
+}
+
 v1::RecognizeRequest to_proto(const RecognizeInput& input, const RecognizeOptions& options) {
   v1::RecognizeRequest message;
   *message.mutable_camera() = to_proto(input.camera);
   if (!input.image.empty()) {
     message.set_image(input.image);
   } else {
-    v1::ImagePoints& points = *message.mutable_points();
-    for (const ImagePoint& point : input.points) {
-      v1::ImagePoint& added = *points.add_points();
-      added.set_type(to_proto(point.type));
-      added.set_u(point.uv.x());
-      added.set_v(point.uv.y());
-      for (const double direction : point.directions_rad) added.add_directions_rad(direction);
-    }
-    for (const auto& [a, b] : input.links) {
-      points.add_links(a);
-      points.add_links(b);
-    }
+    *message.mutable_points() = to_proto(input.points, input.links);
   }
   v1::RecognizeOptions& wire = *message.mutable_options();
   for (const std::string& model : options.models) wire.add_models(model);

@@ -15,10 +15,12 @@ int main(int argc, char** argv) {
       "manage its scenes and models.",
       {{"landmarkdb query view.ply", "where is this?"},
        {"landmarkdb recognize image.png --camera cam.json", "which model is this, and where?"},
+       {"landmarkdb track video/ --camera cam.json --model box", "where is it in every image?"},
        {"landmarkdb --server unix:/run/landmarkdb.sock scene list", "what is stored"}});
   client::add_global_options(app, program.options);
   client::add_query_command(app, program);
   client::add_recognize_command(app, program);
+  client::add_track_command(app, program);
   client::add_scene_commands(app, program);
   client::add_model_commands(app, program);
   client::add_server_commands(app, program);

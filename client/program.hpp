@@ -23,6 +23,7 @@ struct Program {
 // Each adds its commands to the program; their values live as long as the program's actions.
 void add_query_command(CLI::App& app, Program& program);
 void add_recognize_command(CLI::App& app, Program& program);
+void add_track_command(CLI::App& app, Program& program);
 void add_scene_commands(CLI::App& app, Program& program);
 void add_model_commands(CLI::App& app, Program& program);
 void add_server_commands(CLI::App& app, Program& program);

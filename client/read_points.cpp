@@ -105,6 +105,10 @@ void parse_points(std::string_view text, const std::string& name, RecognizeInput
   } catch (const Json::exception& error) {
     throw Error(ErrorCode::kInvalidArgument, name + ": is not valid JSON: " + error.what());
   }
+  take_points(json, name, input);
+}
+
+void take_points(const Json& json, const std::string& name, RecognizeInput& input) {
   PointsReader(name, input).read(json);
 }
 

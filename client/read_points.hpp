@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "client/recognition.hpp"
 
 namespace landmarkdb::client {
@@ -17,5 +19,8 @@ void read_points(const std::filesystem::path& path, RecognizeInput& input);
 
 // The same for a file in memory; `name` is what messages call it.
 void parse_points(std::string_view text, const std::string& name, RecognizeInput& input);
+
+// The same for what has been parsed.
+void take_points(const nlohmann::json& json, const std::string& name, RecognizeInput& input);
 
 }  // namespace landmarkdb::client

@@ -49,6 +49,11 @@ Json stats_json(const Stats& s) {
           {"recognize_not_found", s.recognize_not_found},
           {"recognize_ms_mean", s.recognize_ms_mean},
           {"recognize_ms_max", s.recognize_ms_max},
+          {"tracks_open", s.tracks_open},
+          {"track_frames", s.track_frames},
+          {"track_frames_seen", s.track_frames_seen},
+          {"track_ms_mean", s.track_ms_mean},
+          {"track_ms_max", s.track_ms_max},
           {"resident_bytes", s.resident_bytes},
           {"database_bytes", s.database_bytes},
           {"reloads_total", s.reloads_total}};
@@ -76,6 +81,10 @@ std::string stats_text(const Stats& s) {
        cli::count_text(s.recognized) + " recognized, " + cli::count_text(s.recognize_not_found) +
            " not found, by " + cli::count_text(s.models) + " models; mean " +
            rounded(s.recognize_ms_mean, "ms") + ", longest " + rounded(s.recognize_ms_max, "ms"));
+  line("tracks",
+       cli::count_text(s.tracks_open) + " open; " + cli::count_text(s.track_frames) +
+           " frames, the object seen in " + cli::count_text(s.track_frames_seen) + "; mean " +
+           rounded(s.track_ms_mean, "ms") + ", longest " + rounded(s.track_ms_max, "ms"));
   line("requests",
        cli::count_text(s.requests_total) + ", of these " + cli::count_text(s.errors_total) +
            " failed; " + cli::count_text(s.rejected_total) + " turned away, " +

@@ -50,6 +50,14 @@ void add_recognize_fields(const v1::RecognizeResult& result, std::vector<LogFiel
   fields.push_back({"refine_ms", result.timing().refine_ms()});
 }
 
+void add_track_fields(const v1::TrackFrameResult& result, std::vector<LogField>& fields) {
+  const std::string status = v1::TrackStatus_Name(result.status());
+  fields.push_back({"verdict", status.substr(std::string("TRACK_STATUS_").size())});
+  fields.push_back({"frame", result.frame()});
+  fields.push_back({"load_ms", result.timing().load_ms()});
+  fields.push_back({"track_ms", result.timing().track_ms()});
+}
+
 }  // namespace
 
 void Dispatcher::submit(const std::shared_ptr<Job>& job, Answer answer) {
@@ -58,14 +66,18 @@ void Dispatcher::submit(const std::shared_ptr<Job>& job, Answer answer) {
     run(*job, answer);
     return;
   }
-  WorkQueue& queue = lane == Lane::kWrite ? writes_ : compute_;
-  const bool queued = queue.post([this, job, answer] { run(*job, answer); });
-  if (!queued && job->claim()) {
+  if (!enqueue(lane, job, answer) && job->claim()) {
     ++counters_.rejected_total;
     answer(refuse(*job,
                   ErrorCode::kResourceExhausted,
                   "too many requests are waiting already; try again shortly"));
   }
+}
+
+bool Dispatcher::enqueue(Lane lane, const std::shared_ptr<Job>& job, const Answer& answer) {
+  const auto work = [this, job, answer] { run(*job, answer); };
+  if (lane == Lane::kTrack && job->tracks) return TrackLine::post(job->tracks, compute_, work);
+  return (lane == Lane::kWrite ? writes_ : compute_).post(work);
 }
 
 void Dispatcher::run(Job& job, const Answer& answer) {
@@ -90,7 +102,8 @@ v1::Envelope Dispatcher::work(Job& job) {
   context.deadline = job.deadline;
   context.progress = job.progress;
   context.threads = threads_for(lane_of(job.request));
-  v1::Envelope reply = handler_.handle(job.request, context);
+  v1::Envelope reply =
+      handler_.handle(job.request, context, job.tracks ? &job.tracks->tracks() : nullptr);
   --counters_.in_flight;
   log_outcome(job, reply, started);
   return reply;
@@ -129,6 +142,8 @@ void Dispatcher::log_outcome(const Job& job,
     add_query_fields(reply.query_result(), fields);
   } else if (reply.has_recognize_result()) {
     add_recognize_fields(reply.recognize_result(), fields);
+  } else if (reply.has_track_frame_result()) {
+    add_track_fields(reply.track_frame_result(), fields);
   }
   log_.write(LogLevel::kInfo, request_name(job.request), fields);
 }

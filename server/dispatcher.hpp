@@ -12,6 +12,7 @@
 #include "server/log.hpp"
 #include "server/memory_budget.hpp"
 #include "server/request_handler.hpp"
+#include "server/track_line.hpp"
 #include "server/work_queue.hpp"
 
 namespace landmarkdb {
@@ -27,6 +28,7 @@ struct Job {
   std::stop_source stop;
   std::function<void(const Progress&)> progress;  // called from the working thread
   MemoryBudget::Lease memory;
+  std::shared_ptr<TrackLine> tracks;  // of its connection; may be null
 
   // True for the first caller only: whoever claims the job answers it.
   bool claim() { return !claimed_.exchange(true); }
@@ -61,6 +63,8 @@ class Dispatcher {
   v1::Envelope refuse(const Job& job, ErrorCode code, const std::string& message);
 
  private:
+  // False: the queue is full.
+  bool enqueue(Lane lane, const std::shared_ptr<Job>& job, const Answer& answer);
   // Works on the job, unless somebody has claimed it, and answers whatever happens.
   void run(Job& job, const Answer& answer);
   v1::Envelope work(Job& job);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -10,14 +9,11 @@
 #include "engine/base/stage_timings.hpp"
 #include "engine/mono/draw_overlay.hpp"
 #include "engine/mono/find_features.hpp"
-#include "engine/mono/read_image.hpp"
 #include "server/convert_recognition.hpp"
+#include "server/decode_image.hpp"
 
 namespace landmarkdb {
 namespace {
-
-// What a pixel costs while features are sought: the image, its gradients and its edges.
-constexpr std::size_t kBytesPerPixel = 16;
 
 void require_models(const RecognizeOptions& options, const MonoCatalog& catalog) {
   for (const std::string& name : options.models) {
@@ -29,27 +25,6 @@ void require_models(const RecognizeOptions& options, const MonoCatalog& catalog)
       throw Error(ErrorCode::kNotFound, "there is no model '" + name + "'", "options.models");
     }
   }
-}
-
-GreyImage decode(const v1::RecognizeRequest& request, const Camera& camera) {
-  // No more pixels than the camera has: a file that promises more is refused before it is decoded.
-  ReadImageOptions options;
-  options.max_pixels =
-      std::min<std::uint64_t>(options.max_pixels, std::uint64_t{camera.width} * camera.height);
-  GreyImage image;
-  try {
-    image = parse_image(std::as_bytes(std::span(request.image())), "image", options);
-  } catch (const Error& error) {
-    throw Error(error.code(), error.what(), "image");
-  }
-  if (image.width != camera.width || image.height != camera.height) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "the camera file is for images of " + std::to_string(camera.width) + " x " +
-                    std::to_string(camera.height) + " pixels, but the image has " +
-                    std::to_string(image.width) + " x " + std::to_string(image.height),
-                "camera");
-  }
-  return image;
 }
 
 }  // namespace
@@ -73,20 +48,13 @@ v1::RecognizeResult recognize(const v1::RecognizeRequest& request,
     return to_proto(served.recognizer->recognize(
         from_proto(request.points(), camera), camera, options, context));
   }
-  const std::size_t bytes = kBytesPerPixel * camera.width * camera.height;
-  const MemoryBudget::Lease lease = memory.reserve(bytes);
-  if (!lease) {
-    throw Error(ErrorCode::kResourceExhausted,
-                "the server has no memory left for an image of " + std::to_string(camera.width) +
-                    " x " + std::to_string(camera.height) + " pixels",
-                "image");
-  }
+  const MemoryBudget::Lease lease = reserve_image(camera, memory);
   StageTimings::Duration features_time{};
   GreyImage image;
   ImageFeatures features;
   {
     const StageTimer timer(features_time);
-    image = decode(request, camera);
+    image = decode_image(request.image(), camera);
     features = find_image_features(image, {.camera = camera}, context);
   }
   RecognizeResult result = served.recognizer->recognize(features, camera, options, context);

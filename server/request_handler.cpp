@@ -41,6 +41,17 @@ void raise_to(std::atomic<std::uint64_t>& maximum, std::uint64_t value) {
   }
 }
 
+std::uint64_t microseconds_since(std::chrono::steady_clock::time_point start) {
+  const auto passed = std::chrono::steady_clock::now() - start;
+  return static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::microseconds>(passed).count());
+}
+
+TrackStore& need(TrackStore* tracks) {
+  if (tracks != nullptr) return *tracks;
+  throw Error(ErrorCode::kFailedPrecondition, "tracking needs a connection that stays open");
+}
+
 }  // namespace
 
 Lane lane_of(const v1::Envelope& request) {
@@ -52,6 +63,10 @@ Lane lane_of(const v1::Envelope& request) {
     case v1::Envelope::kModelList:
     case v1::Envelope::kModelShow:
       return Lane::kCompute;
+    case v1::Envelope::kTrackOpen:
+    case v1::Envelope::kTrackFrame:
+    case v1::Envelope::kTrackClose:
+      return Lane::kTrack;
     case v1::Envelope::kSceneAdd:
     case v1::Envelope::kSceneRemove:
     case v1::Envelope::kSceneRename:
@@ -90,13 +105,15 @@ v1::Envelope error_envelope(std::uint64_t request_id,
   return envelope;
 }
 
-v1::Envelope RequestHandler::handle(const v1::Envelope& request, const RunContext& context) {
+v1::Envelope RequestHandler::handle(const v1::Envelope& request,
+                                    const RunContext& context,
+                                    TrackStore* tracks) {
   const std::uint64_t id = request.request_id();
   try {
     v1::Envelope reply;
     reply.set_request_id(id);
     context.check("waiting");
-    dispatch(request, context, reply);
+    dispatch(request, context, tracks, reply);
     return reply;
   } catch (const Error& error) {
     return error_envelope(id, error.code(), error.what(), error.field());
@@ -112,6 +129,7 @@ v1::Envelope RequestHandler::handle(const v1::Envelope& request, const RunContex
 
 void RequestHandler::dispatch(const v1::Envelope& request,
                               const RunContext& context,
+                              TrackStore* tracks,
                               v1::Envelope& reply) {
   switch (request.body_case()) {
     case v1::Envelope::kPing:
@@ -149,6 +167,15 @@ void RequestHandler::dispatch(const v1::Envelope& request,
       break;
     case v1::Envelope::kRecognize:
       *reply.mutable_recognize_result() = recognize(request.recognize(), context);
+      break;
+    case v1::Envelope::kTrackOpen:
+      *reply.mutable_track_open_reply() = need(tracks).open(request.track_open(), *state_.served());
+      break;
+    case v1::Envelope::kTrackFrame:
+      *reply.mutable_track_frame_result() = track(request.track_frame(), context, need(tracks));
+      break;
+    case v1::Envelope::kTrackClose:
+      *reply.mutable_track_close_reply() = need(tracks).close(request.track_close());
       break;
     case v1::Envelope::kModelList:
       *reply.mutable_model_list_reply() = model_admin_.list();
@@ -213,11 +240,24 @@ v1::RecognizeResult RequestHandler::recognize(const v1::RecognizeRequest& reques
   reply.set_generation(served->generation);
   ++(reply.status() == v1::RECOGNIZE_STATUS_RECOGNIZED ? counters_.recognized
                                                        : counters_.recognize_not_found);
-  const auto us = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(
-                                                 std::chrono::steady_clock::now() - start)
-                                                 .count());
+  const std::uint64_t us = microseconds_since(start);
   counters_.recognize_us_total += us;
   raise_to(counters_.recognize_us_max, us);
+  return reply;
+}
+
+v1::TrackFrameResult RequestHandler::track(const v1::TrackFrameRequest& request,
+                                           const RunContext& context,
+                                           TrackStore& tracks) {
+  const auto start = std::chrono::steady_clock::now();
+  v1::TrackFrameResult reply = tracks.next(request, memory_, context);
+  ++counters_.track_frames;
+  if (reply.status() == v1::TRACK_STATUS_TRACKED || reply.status() == v1::TRACK_STATUS_RECOGNIZED) {
+    ++counters_.track_frames_seen;
+  }
+  const std::uint64_t us = microseconds_since(start);
+  counters_.track_us_total += us;
+  raise_to(counters_.track_us_max, us);
   return reply;
 }
 
@@ -258,6 +298,15 @@ v1::StatsReply RequestHandler::stats() const {
                                 static_cast<double>(recognitions));
   }
   reply.set_recognize_ms_max(static_cast<double>(counters_.recognize_us_max) / 1000.0);
+  reply.set_tracks_open(counters_.tracks_open);
+  const std::uint64_t frames = counters_.track_frames;
+  reply.set_track_frames(frames);
+  reply.set_track_frames_seen(counters_.track_frames_seen);
+  if (frames > 0) {
+    reply.set_track_ms_mean(static_cast<double>(counters_.track_us_total) / 1000.0 /
+                            static_cast<double>(frames));
+  }
+  reply.set_track_ms_max(static_cast<double>(counters_.track_us_max) / 1000.0);
   reply.set_query_ms_max(static_cast<double>(counters_.query_us_max) / 1000.0);
   reply.set_resident_bytes(resident_bytes());
   reply.set_database_bytes(file_bytes(state_.db_path()));

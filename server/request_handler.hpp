@@ -9,6 +9,7 @@
 #include "server/options.hpp"
 #include "server/scene_admin.hpp"
 #include "server/server_state.hpp"
+#include "server/track_store.hpp"
 #include "server/work_queue.hpp"
 
 namespace landmarkdb {
@@ -17,6 +18,7 @@ namespace landmarkdb {
 enum class Lane {
   kInline,   // at once, on the connection's own thread: takes microseconds, never waits
   kCompute,  // reads the database or computes; many at a time
+  kTrack,    // the same, but those of one connection one after the other, as they came
   kWrite,    // changes the database or what is in service; one at a time
 };
 Lane lane_of(const v1::Envelope& request);
@@ -48,11 +50,20 @@ class RequestHandler {
         admin_(options, state, memory),
         model_admin_(options, state) {}
 
-  // Never throws. `context` says when to stop and whom to tell of progress.
-  v1::Envelope handle(const v1::Envelope& request, const RunContext& context);
+  // Never throws. `context` says when to stop and whom to tell of progress. `tracks` are those of
+  // the connection, used by one call at a time; null: nothing can be tracked.
+  v1::Envelope handle(const v1::Envelope& request,
+                      const RunContext& context,
+                      TrackStore* tracks = nullptr);
 
  private:
-  void dispatch(const v1::Envelope& request, const RunContext& context, v1::Envelope& reply);
+  void dispatch(const v1::Envelope& request,
+                const RunContext& context,
+                TrackStore* tracks,
+                v1::Envelope& reply);
+  v1::TrackFrameResult track(const v1::TrackFrameRequest& request,
+                             const RunContext& context,
+                             TrackStore& tracks);
   v1::QueryResult query(const v1::QueryRequest& request, const RunContext& context);
   v1::RecognizeResult recognize(const v1::RecognizeRequest& request, const RunContext& context);
   v1::StatsReply stats() const;

@@ -79,6 +79,8 @@ struct Counters {
   std::atomic<std::uint64_t> query_us_total{0}, query_us_max{0};
   std::atomic<std::uint64_t> recognized{0}, recognize_not_found{0};
   std::atomic<std::uint64_t> recognize_us_total{0}, recognize_us_max{0};
+  std::atomic<std::uint64_t> tracks_open{0}, track_frames{0}, track_frames_seen{0};
+  std::atomic<std::uint64_t> track_us_total{0}, track_us_max{0};
   std::atomic<std::uint64_t> reloads_total{0};
 };
 

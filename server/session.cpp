@@ -32,7 +32,8 @@ Session::Session(Socket socket,
       id_(id),
       peer_(std::move(peer)),
       services_(services),
-      events_(std::move(events)) {}
+      events_(std::move(events)),
+      tracks_(std::make_shared<TrackLine>(services.counters)) {}
 
 void Session::start() {
   boost::asio::dispatch(
@@ -165,6 +166,7 @@ void Session::submit(v1::Envelope envelope, MemoryBudget::Lease memory) {
   auto job = std::make_shared<Job>();
   job->request = std::move(envelope);
   job->connection = id_;
+  job->tracks = tracks_;
   job->memory = std::move(memory);
   OpenRequest& open = requests_[request_id];
   open.job = job;
@@ -209,7 +211,8 @@ void Session::fail(std::uint64_t request_id, const std::exception& error) {
 void Session::set_deadline(OpenRequest& open) {
   Job& job = *open.job;
   std::chrono::milliseconds limit(job.request.timeout_ms());
-  if (lane_of(job.request) == Lane::kCompute) {
+  const Lane lane = lane_of(job.request);
+  if (lane == Lane::kCompute || lane == Lane::kTrack) {
     const std::chrono::milliseconds own = services_.options.deadline;
     limit = limit.count() == 0 ? own : std::min(limit, own);
   }
@@ -296,6 +299,7 @@ void Session::stop_requests() {
 
 void Session::on_closed(const std::string& why) {
   stop_requests();
+  tracks_.reset();
   if (std::exchange(greeted_, false)) --services_.clients;
   if (events_.on_closed) std::exchange(events_.on_closed, nullptr)();
   std::vector<LogField> fields = {{"connection", id_}};

@@ -95,6 +95,7 @@ class Session final : public Connection {
   SessionServices& services_;
   SessionEvents events_;
   std::unordered_map<std::uint64_t, OpenRequest> requests_;
+  std::shared_ptr<TrackLine> tracks_;  // a job in work holds it too
   bool greeted_ = false;
   bool leaving_ = false;  // no new requests are taken
 };

@@ -132,6 +132,7 @@ void Tracker::start_from(const Eigen::Isometry3d& T_camera_object) {
   motion_ = still();
   missed_ = 0;
   last_share_ = 0.0;
+  confidence_ = 1.0;
   memory_.clear();
 }
 
@@ -342,6 +343,7 @@ TrackResult Tracker::found(const Frame& frame, const Fit& fit, TrackStatus statu
   result.matched = fit.matched;
   result.visible_points = fit.visible;
   result.edge_share = fit.edge_share;
+  result.confidence = confidence_;
   return result;
 }
 
@@ -355,6 +357,7 @@ TrackResult Tracker::missed(const Frame& frame, const RigidPose& predicted, cons
       result.status = TrackStatus::kPredicted;
       result.reason = "the object was not seen where it should be";
       result.T_camera_object = predicted.isometry();
+      result.confidence = confidence_;
       return result;
     }
     pose_.reset();
@@ -378,6 +381,7 @@ TrackResult Tracker::recognised(const Frame& frame, const RunContext& run) {
   }
   const MonoHypothesis& best = answer.hypotheses.front();
   start_from(best.T_camera_object);
+  confidence_ = best.confidence;
   // The same refinement as in the frames to come, so that the pose does not jump with them.
   const std::optional<Fit> fit = follow(frame, *pose_);
   if (fit && fit->believed) return found(frame, *fit, TrackStatus::kRecognized);
@@ -388,6 +392,7 @@ TrackResult Tracker::recognised(const Frame& frame, const RunContext& run) {
   result.matched = best.pairs.size();
   result.visible_points = best.visible_points;
   result.edge_share = best.edge_share;
+  result.confidence = confidence_;
   return result;
 }
 

@@ -51,6 +51,8 @@ struct TrackResult {
   std::size_t matched = 0;  // visible points of the model that were found, or whose edges were
   std::size_t visible_points = 0;
   double edge_share = 0.0;  // of the visible edges' length, what lies on edges of the image
+  // Of the recognition that the track goes back to; 1 where its start was given, 0 without a pose.
+  double confidence = 0.0;
   bool measured() const {
     return status == TrackStatus::kTracked || status == TrackStatus::kRecognized;
   }
@@ -109,6 +111,7 @@ class Tracker {
   std::size_t missed_ = 0;
   EdgeMemory memory_;        // what the edges looked like when last seen
   double last_share_ = 0.0;  // of what should be seen, found in the last frame
+  double confidence_ = 0.0;  // of the start of this track
 };
 
 }  // namespace landmarkdb
