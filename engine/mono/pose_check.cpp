@@ -77,8 +77,7 @@ PoseCheck::PoseCheck(std::span<const SearchModel> models,
       camera_(camera),
       options_(options),
       marks_(image.size(), 0),
-      marks_distance_(image.size(), 0.0F),
-      taken_(image.size(), 0) {}
+      marks_distance_(image.size(), 0.0F) {}
 
 std::size_t PoseCheck::collect(std::uint32_t model,
                                const RigidPose& pose,
@@ -108,7 +107,7 @@ std::size_t PoseCheck::collect(std::uint32_t model,
     if (at < 0) continue;
     const std::size_t i = static_cast<std::size_t>(at);
     const double d2 = (image_[i].xy - xy).squaredNorm();
-    if (d2 > reach2 || taken_[i]) continue;
+    if (d2 > reach2) continue;
     const float distance = static_cast<float>(std::sqrt(d2));
     if (marks_[i] == call_) {  // two of the model's points at one feature: the nearer has it
       if (distance >= marks_distance_[i]) continue;
@@ -130,7 +129,7 @@ std::span<const Match> PoseCheck::look(std::uint32_t model, const RigidPose& pos
   const double depth = (pose * search.center).z();
   if (!(depth >= options_.min_depth_m) || !(depth <= options_.max_depth_m)) return {};
   const Eigen::Vector3d sight = -(pose.R.transpose() * pose.t) - search.center;
-  const std::vector<std::uint16_t>& seen = search.seen[nearest_view(sight.normalized())];
+  const std::vector<std::uint16_t>& seen = search.seen[nearest_view(sight)];
   const std::size_t need =
       std::max(kLeastHits,
                static_cast<std::size_t>(std::ceil(kLeastShare * static_cast<double>(seen.size()))));
@@ -148,7 +147,7 @@ std::span<const Match> PoseCheck::grow(std::uint32_t model, RigidPose& pose) {
     const double depth = (pose * search.center).z();
     if (!(depth >= options_.min_depth_m) || !(depth <= options_.max_depth_m)) return {};
     const Eigen::Vector3d sight = -(pose.R.transpose() * pose.t) - search.center;
-    const std::vector<std::uint16_t>& seen = search.seen[nearest_view(sight.normalized())];
+    const std::vector<std::uint16_t>& seen = search.seen[nearest_view(sight)];
     const std::size_t need = std::max(
         kLeastHits,
         static_cast<std::size_t>(std::ceil(kLeastShare * static_cast<double>(seen.size()))));
@@ -194,7 +193,7 @@ std::optional<MonoCandidate> PoseCheck::settle(std::uint32_t model,
     if (!refine(model, candidate.pose, nullptr)) return std::nullopt;
     const Eigen::Vector3d eye = -(candidate.pose.R.transpose() * candidate.pose.t);
     if (round + 1 < kRounds_px.size()) {
-      seen = search.seen[nearest_view((eye - search.center).normalized())];
+      seen = search.seen[nearest_view(eye - search.center)];
     } else {
       const std::vector<bool> exact = search.visibility.points_from(eye);
       seen.clear();
@@ -409,10 +408,6 @@ void PoseCheck::settle_on_edges(MonoCandidate& candidate) const {
     candidate.rms_px = std::sqrt(sum / static_cast<double>(candidate.matches.size()));
   }
   candidate.edge_odds = score_edges(samples.size(), kStep_px, candidate.edge_share);
-}
-
-void PoseCheck::take(const MonoCandidate& candidate) {
-  for (const Match& match : candidate.matches) taken_[match.image] = 1;
 }
 
 }  // namespace landmarkdb

@@ -63,8 +63,7 @@ class PoseCheck {
             const Camera& camera,
             const CheckOptions& options);
 
-  // The quick look: matches within 8 px, enough of them to go on with. `taken`: image points that
-  // other objects hold. Empty: not enough.
+  // The quick look: matches within 8 px, enough of them to go on with. Empty: not enough.
   std::span<const Match> look(std::uint32_t model, const RigidPose& pose);
 
   // Where the quick look fails but seven points agree: refines the pose on them and looks again, as
@@ -82,9 +81,6 @@ class PoseCheck {
   void settle_on_edges(MonoCandidate& candidate) const;
 
   bool has_edges() const { return !edges_.empty(); }
-
-  void take(const MonoCandidate& candidate);
-  bool is_taken(std::size_t image_point) const { return taken_[image_point] != 0; }
 
   std::size_t looks() const { return looks_; }
 
@@ -108,7 +104,6 @@ class PoseCheck {
   CheckOptions options_;
   std::vector<std::uint32_t> marks_;  // by image point: the call that has used it
   std::vector<float> marks_distance_;
-  std::vector<std::uint8_t> taken_;
   std::uint32_t call_ = 0;
   std::size_t looks_ = 0;
   std::vector<Match> matches_;

@@ -26,7 +26,11 @@ namespace {
 // would give a million.
 constexpr std::size_t kMostQuads = 20000;
 // Those with two links only are many and say little: a sample of them.
-constexpr std::size_t kMostPairs = 6000;
+constexpr std::size_t kMostPairs = 3000;
+// Single votes tried of either. By landmarkdb-bench-mono (seed 11, 100 models, 60 features): 4000
+// of the second, and twice the pairs, find no more and take a quarter longer; 1000 of each lose 6
+// in 100 with 6 or 7 true features.
+constexpr std::size_t kMostSingles = 4000, kMostSinglesOfPairs = 2000;
 constexpr double kReach_px = 8.0;  // of the table of nearest features: the quick look's tolerance
 constexpr double kImageWidth_px = 640.0;  // the pixel tolerances are those of such an image
 constexpr std::size_t kFewest = 4;        // points that fix a pose
@@ -127,7 +131,7 @@ bool Recognizer::Impl::search(const ImageView& image,
     for (const ModelFeature& point : models_[i].model().points)
       free_types |= 1U << static_cast<unsigned>(point.type);
   }
-  const VoteOptions votes{options.min_depth_m, options.max_depth_m, wanted};
+  VoteOptions votes{options.min_depth_m, options.max_depth_m, wanted, kMostSingles};
   bool complete = true;
   for (const auto find_quads : {chained_quads, linked_quads}) {
     if (!any_linked || image.link_count() == 0 || pool.beyond_doubt()) break;
@@ -137,10 +141,12 @@ bool Recognizer::Impl::search(const ImageView& image,
       quads = find_quads(image, find_quads == linked_quads ? kMostPairs : kMostQuads);
     }
     const StageTimer timer(timings.verify);
+    votes.most_singles = find_quads == linked_quads ? kMostSinglesOfPairs : kMostSingles;
     complete = search_by_votes(models_, index_, image, quads.quads, votes, run, pool) &&
                !quads.cut_short && complete;
   }
   if (free_types != 0) {
+    votes.most_singles = kMostSingles;
     ImageQuads quads;
     {
       const StageTimer timer(timings.lookup);

@@ -38,7 +38,8 @@ inline constexpr std::size_t kMostLookalikes = 48;
 SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record,
                           std::size_t most_lookalikes = kMostLookalikes);
 
-// The number of the model view nearest to a direction (unit, from the object to the camera).
+// The number of the model view nearest to a direction (from the object to the camera, of any
+// length), to a degree. A look-up.
 std::size_t nearest_view(const Eigen::Vector3d& direction);
 
 // Whether pose b is pose a but for one of the model's symmetries, within `angle_rad` and

@@ -11,8 +11,7 @@
 namespace landmarkdb {
 namespace {
 
-// Figures of a prototype, kept as they are; kMostSingles by landmarkdb-bench-mono: 12,000 find
-// hardly more and take three times as long.
+// Figures of a prototype, kept as they are.
 constexpr double kCodeTolerance = 0.05, kMostTolerance = 0.1, kNoise_px = 1.5;
 constexpr double kCell_px = 24.0;
 constexpr double kAngles = 12.0;
@@ -20,7 +19,6 @@ constexpr double kDepthsAnEFold = 4.0;
 constexpr std::size_t kFeaturesOfABin = 5;
 constexpr std::size_t kMostBins = 800;
 constexpr std::size_t kLeastBins = 8;  // of a model
-constexpr std::size_t kMostSingles = 4000;
 constexpr std::size_t kMostVotes = 600000;
 constexpr std::size_t kCounters = std::size_t{1} << 16U;
 
@@ -295,7 +293,7 @@ bool search_by_votes(std::span<const SearchModel> models,
   std::size_t tried = 0;
   for (const std::vector<std::uint32_t>& level : order) {
     for (const std::uint32_t i : level) {
-      if (tried == kMostSingles) return false;
+      if (tried == options.most_singles) return false;
       if (tried % kCheckEvery == 0) {
         run.check("verify");
         if (pool.beyond_doubt()) return !ballot.is_full();

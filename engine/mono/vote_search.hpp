@@ -13,7 +13,8 @@ namespace landmarkdb {
 
 struct VoteOptions {
   double min_depth_m = 0.05, max_depth_m = 20.0;
-  std::span<const char> wanted{};  // by model: search it
+  std::span<const char> wanted{};   // by model: search it
+  std::size_t most_singles = 4000;  // single votes that are tried after the bins
 };
 
 // Method B: looks the image's quads up among those of all views of all models, lets each hit vote
