@@ -19,6 +19,7 @@
 #include "engine/geometry/pose.hpp"
 #include "engine/retrieval/describe_scene.hpp"
 #include "engine/retrieval/localizer.hpp"
+#include "tests/support/normalised_error.hpp"
 
 namespace landmarkdb::bench {
 
@@ -124,7 +125,7 @@ void ask(const datasets::DepthFrame& frame,
   }
   std::printf(
       "%s,%d,%.4f,%d,%d,%.4f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%u,%lu,%.4f,%.0f,%.4f,%."
-      "4f,"
+      "4f,%.3f,"
       "%.0f\n",
       name.empty() ? "stranger" : name.c_str(),
       number,
@@ -147,6 +148,10 @@ void ask(const datasets::DepthFrame& frame,
       fit.agreeing,
       fit.contrast,
       fit.contradicted,
+      right ? testing::normalised_squared_error(answer.hypotheses[0].covariance,
+                                                answer.hypotheses[0].T_scene_sensor,
+                                                frame.T_scene_camera)
+            : 0.0,
       answer.timings.total.count());
   std::fflush(stdout);
 }
@@ -188,7 +193,8 @@ int run(const Settings& settings) {
   std::puts(
       "place,frame,spread,status,right,metres,degrees,confidence,quality,overlap,explained,"
       "coverage,"
-      "crossed,margin,observability,inliers,keypoints,rmse_m,agreeing,contrast,contradicted,ms");
+      "crossed,margin,observability,inliers,keypoints,rmse_m,agreeing,contrast,contradicted,nees,"
+      "ms");
   Tally all;
   Tally informative;
   for (std::size_t p = 0; p < places.size(); ++p) {

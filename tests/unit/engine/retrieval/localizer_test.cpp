@@ -12,6 +12,7 @@
 #include "engine/base/error.hpp"
 #include "engine/base/random.hpp"
 #include "engine/geometry/pose.hpp"
+#include "tests/support/normalised_error.hpp"
 #include "tests/support/pose_near.hpp"
 #include "tests/unit/engine/retrieval/rooms.hpp"
 
@@ -280,6 +281,24 @@ TEST(Localizer, KeepsItsMillimetresFarFromZero) {
   prior.prior_T_scene_sensor = expected;
   prior.prior_radius_m = 0.5;
   EXPECT_EQ(surveyed->query(frame.cloud, prior, {}).status, QueryStatus::kLocalized);
+}
+
+TEST(Localizer, StatesACovarianceThatItsErrorsKeepTo) {
+  double sum = 0.0;
+  int count = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+    const Frame frame = frame_in(lobby().scene, seed);
+    const QueryResult answer = lobby().localizer->query(frame.cloud, {}, {});
+    if (answer.status != QueryStatus::kLocalized) continue;
+    sum += testing::normalised_squared_error(
+        answer.hypotheses[0].covariance, answer.hypotheses[0].T_scene_sensor, frame.T_scene_sensor);
+    ++count;
+  }
+  ASSERT_GE(count, 5);
+  // 1 for a sensor's noise; these frames have next to none, and a tenth of a voxel is granted.
+  const double mean = sum / count;
+  EXPECT_GT(mean, 0.005);
+  EXPECT_LT(mean, 4.0);
 }
 
 TEST(Localizer, FindsSeveralViewsWithTheirPosesAsOne) {
