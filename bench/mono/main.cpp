@@ -31,7 +31,7 @@ struct Settings {
 
 json pose_rows(const Settings& settings) {
   json rows = json::array();
-  std::printf("%-18s %-6s %9s %9s %9s %9s %7s %7s %6s\n",
+  std::printf("%-18s %-17s %9s %9s %9s %9s %7s %7s %6s\n",
               "points",
               "method",
               "turn deg",
@@ -42,7 +42,7 @@ json pose_rows(const Settings& settings) {
               "unsaid",
               "us");
   for (const PoseColumn& c : run_poses(settings.poses, settings.seed)) {
-    std::printf("%-18s %-6s %9.3f %9.3f %9.2f %9.2f %6.2f%% %6.2f%% %6.1f\n",
+    std::printf("%-18s %-17s %9.3f %9.3f %9.2f %9.2f %6.2f%% %6.2f%% %6.1f\n",
                 c.points.c_str(),
                 c.method.c_str(),
                 c.turn_deg,

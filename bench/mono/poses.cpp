@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "bench/mono/pose_peer.hpp"
 #include "engine/base/random.hpp"
 #include "engine/geometry/pose.hpp"
 #include "engine/mono/point_pose.hpp"
@@ -125,6 +126,13 @@ std::vector<PoseColumn> run_poses(std::size_t poses, std::uint64_t seed) {
     columns.push_back(measure(set.name, "ours", problems, [&](const Problem& problem) {
       return solve_points(problem.points, seen_by, {});
     }));
+    for (const PosePeer& peer : pose_peers(set.n, set.planar)) {
+      columns.push_back(measure(set.name, peer.name, problems, [&](const Problem& problem) {
+        PointPoses found;
+        found.count = peer.solve(problem.points, seen_by, found.poses[0].pose) ? 1 : 0;
+        return found;
+      }));
+    }
   }
   return columns;
 }
