@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <vector>
 
-#include "engine/mono/edge_outline.hpp"
 #include "engine/mono/refine_pose.hpp"
 #include "engine/mono/triple_pose.hpp"
 
@@ -99,30 +96,6 @@ std::uint32_t nearest_point(const MonoModel& model, const Eigen::Vector3d& xyz) 
   return best;
 }
 
-// The model's triples that stand on two edges, one of each set that its symmetries carry onto each
-// other (a cube has one).
-std::vector<ModelTriple> corners_of(const SearchModel& search) {
-  const MonoModel& model = search.model();
-  std::vector<ModelTriple> kept;
-  std::vector<std::array<std::uint32_t, 3>> known;
-  for (const ModelTriple& triple : search.record->triples) {
-    const auto [i0, i1, i2] = triple.points;
-    if (!search.linked(i0, i1) || !search.linked(i0, i2)) continue;
-    if (std::find(known.begin(), known.end(), triple.points) != known.end()) continue;
-    kept.push_back(triple);
-    for (const Eigen::Matrix4d& T : model.symmetries) {
-      std::array<std::uint32_t, 3> image{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        image[k] =
-            nearest_point(model, (T * model.points[triple.points[k]].xyz.homogeneous()).head<3>());
-      }
-      if (image[1] > image[2]) std::swap(image[1], image[2]);
-      known.push_back(image);
-    }
-  }
-  return kept;
-}
-
 struct Proposal {
   double share;
   std::uint32_t model;
@@ -134,12 +107,13 @@ class Proposer {
  public:
   Proposer(std::uint32_t number,
            const SearchModel& search,
+           const EdgeOutline& outline,
            const Camera& camera,
            const EdgeDirections& edges,
            const CornerSearchOptions& options)
       : number_(number),
         search_(search),
-        outline_(search),
+        outline_(outline),
         camera_(camera),
         edges_(edges),
         options_(options) {}
@@ -166,7 +140,7 @@ class Proposer {
  private:
   std::uint32_t number_;
   const SearchModel& search_;
-  EdgeOutline outline_;
+  const EdgeOutline& outline_;
   const Camera& camera_;
   const EdgeDirections& edges_;
   const CornerSearchOptions& options_;
@@ -231,7 +205,31 @@ std::vector<Proposal> best_of(std::vector<Proposal> proposals,
 
 }  // namespace
 
+CornerModel prepare_corners(const SearchModel& search) {
+  const MonoModel& model = search.model();
+  CornerModel prepared;
+  std::vector<std::array<std::uint32_t, 3>> known;
+  for (const ModelTriple& triple : search.record->triples) {
+    const auto [i0, i1, i2] = triple.points;
+    if (!search.linked(i0, i1) || !search.linked(i0, i2)) continue;
+    if (std::find(known.begin(), known.end(), triple.points) != known.end()) continue;
+    prepared.corners.push_back(triple);
+    for (const Eigen::Matrix4d& T : model.symmetries) {
+      std::array<std::uint32_t, 3> image{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        image[k] =
+            nearest_point(model, (T * model.points[triple.points[k]].xyz.homogeneous()).head<3>());
+      }
+      if (image[1] > image[2]) std::swap(image[1], image[2]);
+      known.push_back(image);
+    }
+  }
+  if (!prepared.corners.empty()) prepared.outline.emplace(search);
+  return prepared;
+}
+
 bool search_by_corners(std::span<const SearchModel> models,
+                       std::span<const CornerModel> corner_models,
                        const ImageFeatures& features,
                        const Camera& camera,
                        const EdgeGrid& edges,
@@ -249,9 +247,9 @@ bool search_by_corners(std::span<const SearchModel> models,
   for (std::uint32_t m = 0; m < models.size(); ++m) {
     if (options.wanted[m] == 0) continue;
     run.check("verify");
-    const std::vector<ModelTriple> triples = corners_of(models[m]);
+    const std::vector<ModelTriple>& triples = corner_models[m].corners;
     if (triples.empty()) continue;
-    const Proposer proposer(m, models[m], camera, directions, options);
+    const Proposer proposer(m, models[m], *corner_models[m].outline, camera, directions, options);
     const std::size_t most = std::max<std::size_t>(1, kMostPoses / asked / triples.size() / 2);
     complete = complete && corners.size() <= most;
     std::vector<Proposal> proposals;

@@ -31,7 +31,7 @@ class EdgeDirections {
 };
 
 // A model's edges as some dozens of places, with what each view shows of them: what a pose's
-// outline is quickly compared by. Built once a model and search.
+// outline is quickly compared by. Built once a model: 256 views of all places.
 class EdgeOutline {
  public:
   explicit EdgeOutline(const SearchModel& model);

@@ -67,7 +67,9 @@ class Recognizer::Impl {
       : catalog_(std::move(catalog)),
         models_(prepare(*catalog_)),
         mirrors_(mirror_images(*catalog_)),
-        index_(models_) {}
+        index_(models_) {
+    for (const SearchModel& model : models_) corner_models_.push_back(prepare_corners(model));
+  }
 
   RecognizeResult recognize(const ImageFeatures& features,
                             const Camera& camera,
@@ -97,7 +99,8 @@ class Recognizer::Impl {
 
   std::shared_ptr<const MonoCatalog> catalog_;
   std::vector<SearchModel> models_;
-  std::vector<SearchModel> mirrors_;  // of the models, in their order
+  std::vector<CornerModel> corner_models_;  // as models_
+  std::vector<SearchModel> mirrors_;        // of the models, in their order
   QuadIndex index_;
 };
 
@@ -192,6 +195,7 @@ RecognizeResult Recognizer::Impl::recognize(const ImageFeatures& features,
   if (!edges.empty() && !pool.beyond_doubt()) {
     const StageTimer timer(result.timings.verify);
     complete = search_by_corners(models_,
+                                 corner_models_,
                                  features,
                                  camera,
                                  edges,

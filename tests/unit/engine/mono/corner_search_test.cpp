@@ -53,7 +53,9 @@ std::vector<MonoCandidate> found_by_corners(const Picture& picture,
   const EdgeGrid edges(picture.scene.features);
   PoseCheck check(picture.models, image, edges, picture.scene.camera, {});
   CandidatePool pool(picture.models, check);
+  const std::vector<CornerModel> corner_models{prepare_corners(picture.models[0])};
   search_by_corners(picture.models,
+                    corner_models,
                     picture.scene.features,
                     picture.scene.camera,
                     edges,
