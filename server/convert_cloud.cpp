@@ -14,6 +14,7 @@
 #include <zstd_errors.h>
 
 #include "engine/base/error.hpp"
+#include "server/check_field.hpp"
 
 namespace landmarkdb {
 
@@ -28,10 +29,6 @@ constexpr std::int16_t kInvalidInt16 = std::numeric_limits<std::int16_t>::min();
 constexpr std::size_t kChunkBytes = std::size_t{12} * 64 * 1024;
 // Coordinates past this (m) are no place on Earth: georeferenced grids stay below 1e8.
 constexpr double kMaxCoordinate_m = 1e9;
-
-[[noreturn]] void refuse(const std::string& field, const std::string& message) {
-  throw Error(ErrorCode::kInvalidArgument, field + ": " + message, field);
-}
 
 std::size_t point_bytes(const v1::Cloud& cloud, const std::string& field) {
   switch (cloud.encoding()) {

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/geometry/pose.hpp"
+#include "server/check_field.hpp"
 #include "server/convert_explanation.hpp"
 
 namespace landmarkdb {
@@ -15,19 +16,6 @@ namespace {
 // Directions shorter than this are taken for "not set" by mistake.
 constexpr double kMinDirection = 1e-9;
 constexpr double kMaxPriorRadius_m = 1e9;
-
-[[noreturn]] void refuse(const std::string& field, const std::string& message) {
-  throw Error(ErrorCode::kInvalidArgument, field + ": " + message, field);
-}
-
-double in_range(double value, double low, double high, const std::string& field) {
-  if (!(value >= low && value <= high)) {  // also refuses NaN
-    refuse(field,
-           "is " + std::to_string(value) + ", want " + std::to_string(low) + " to " +
-               std::to_string(high));
-  }
-  return value;
-}
 
 Profile profile_from(v1::Profile profile) {
   switch (profile) {

@@ -4,25 +4,13 @@
 
 #include "engine/base/error.hpp"
 #include "engine/geometry/pose.hpp"
+#include "server/check_field.hpp"
 
 namespace landmarkdb {
 namespace {
 
 constexpr std::uint32_t kMostHypotheses = 100;
 constexpr std::uint32_t kLargestSide = 100'000;  // pixels
-
-[[noreturn]] void refuse(const std::string& field, const std::string& message) {
-  throw Error(ErrorCode::kInvalidArgument, field + ": " + message, field);
-}
-
-double in_range(double value, double low, double high, const std::string& field) {
-  if (!(value >= low && value <= high)) {  // also refuses NaN
-    refuse(field,
-           "is " + std::to_string(value) + ", want " + std::to_string(low) + " to " +
-               std::to_string(high));
-  }
-  return value;
-}
 
 double finite(double value, const std::string& field) {
   if (!std::isfinite(value))

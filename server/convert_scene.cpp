@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
+#include "server/check_field.hpp"
 #include "server/convert_query.hpp"
 
 namespace landmarkdb {
@@ -16,10 +17,6 @@ constexpr int kMaxScans = 4096;
 constexpr double kMaxLength_m = 1e6;
 constexpr double kMinDirection = 1e-9;
 constexpr std::size_t kMaxSourceBytes = 1024;
-
-[[noreturn]] void refuse(const std::string& field, const std::string& message) {
-  throw Error(ErrorCode::kInvalidArgument, field + ": " + message, field);
-}
 
 double positive_length(double value, const std::string& field) {
   if (!(value > 0.0 && value <= kMaxLength_m)) {
