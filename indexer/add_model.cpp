@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
-#include "engine/mono/model_triples.hpp"
+#include "engine/mono/search_tables.hpp"
 #include "indexer/new_database.hpp"
 #include "store/names.hpp"
 #include "store/output_file.hpp"
@@ -20,8 +20,7 @@ AddModelResult add_model(const AddModelRequest& request,
   ReadModelResult read = read_model(request.file, request.options, context);
   if (!request.name.empty()) read.model.name = request.name;
   validate_name(read.model.name, "model name");
-  MonoModelRecord record{std::move(read.model), {}};
-  record.triples = make_triples(record.model, context);
+  const MonoModelRecord record = derive_record(std::move(read.model), context);
   AddModelResult result;
   change_or_create(db, [&](Store& store) {
     result.stored = store.insert_model(record, read.warnings, context);

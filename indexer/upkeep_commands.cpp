@@ -9,6 +9,7 @@
 #include "cli/table.hpp"
 #include "engine/base/error.hpp"
 #include "engine/mono/model_triples.hpp"
+#include "engine/mono/search_tables.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/long_job.hpp"
 #include "indexer/scene_view.hpp"
@@ -24,6 +25,8 @@ std::string lines(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) text += cli::printable(sentence) + '\n';
   return text;
 }
+
+ModelDeriver model_deriver() { return {make_triples, make_model_index, model_index_format()}; }
 
 int damaged_unless(bool ok) { return ok ? 0 : exit_status(ErrorCode::kDataLoss); }
 
@@ -51,7 +54,7 @@ int run_check(const Program& program) {
 int run_repair(const Program& program) {
   LongJob job(program);
   const RepairReport report =
-      Store::open_read_write(program.database()).repair(job.context(), make_triples);
+      Store::open_read_write(program.database()).repair(job.context(), model_deriver());
   job.finish_progress();
   std::string text = lines(report.repaired);
   for (const std::string& left : report.remaining) text += "not repaired: " + left + '\n';
@@ -85,12 +88,15 @@ int run_migrate(bool dry_run, const Program& program) {
 
 int run_optimize(const Program& program) {
   LongJob job(program);
-  const OptimizeReport report = Store::open_read_write(program.database()).optimize(job.context());
+  const OptimizeReport report =
+      Store::open_read_write(program.database()).optimize(job.context(), model_deriver());
   job.finish_progress();
   program.print({{"dropped", report.dropped},
+                 {"renewed", report.renewed},
                  {"bytes_before", report.bytes_before},
                  {"bytes_after", report.bytes_after}},
-                lines(report.dropped) + cli::bytes_text(report.bytes_before) + " before, " +
+                lines(report.dropped) + lines(report.renewed) +
+                    cli::bytes_text(report.bytes_before) + " before, " +
                     cli::bytes_text(report.bytes_after) + " after\n");
   return 0;
 }

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
-#include "engine/mono/model_triples.hpp"
 #include "engine/mono/read_model.hpp"
+#include "engine/mono/search_tables.hpp"
 #include "server/change_database.hpp"
 #include "server/convert_recognition.hpp"
 #include "store/names.hpp"
@@ -69,8 +69,7 @@ v1::ModelReply ModelAdmin::add(const v1::ModelAddRequest& request,
                                      {.units = units_from(request.units())},
                                      context);
   read.model.name = request.name();
-  MonoModelRecord record{std::move(read.model), {}};
-  record.triples = make_triples(record.model, context);
+  const MonoModelRecord record = derive_record(std::move(read.model), context);
   const InsertModelResult stored = store.insert_model(record, read.warnings, context);
   put_in_service(options_, state_);
   v1::ModelReply reply;

@@ -49,7 +49,7 @@ void build_models(const Store& store,
   }
   context.check("models");
   served.models = models;
-  served.recognizer = std::make_shared<const Recognizer>(std::move(models));
+  served.recognizer = std::make_shared<const Recognizer>(std::move(models), context);
 }
 
 // What is in the database now; `previous` itself when nothing has changed since.

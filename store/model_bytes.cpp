@@ -196,6 +196,15 @@ std::string triples_digest(const std::vector<ModelTriple>& triples) {
   return digest.finish();
 }
 
+std::string index_digest(const std::string& model_sha256, const ModelIndexBlob& index) {
+  Sha256 digest;
+  const std::string head =
+      model_sha256 + "\n" + std::to_string(index.version) + "\n" + index.params + "\n";
+  digest.update(std::as_bytes(std::span(head)));
+  digest.update(index.quads);
+  return digest.finish();
+}
+
 void validate_model(const MonoModelRecord& record, const std::string& what, ErrorCode code) {
   const MonoModel& model = record.model;
   const auto require = [&](bool good, const std::string& sentence) {

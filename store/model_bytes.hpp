@@ -38,6 +38,9 @@ std::vector<std::byte> edge_mask_of(const MonoModel& model, std::uint32_t idx);
 // SHA-256 over the model but its name, and over its triples.
 std::string model_digest(const MonoModel& model);
 std::string triples_digest(const std::vector<ModelTriple>& triples);
+// Over the model's own digest, the version and the params (a line each), and the bytes: an index is
+// read as that of this model and of this layout, or not at all.
+std::string index_digest(const std::string& model_sha256, const ModelIndexBlob& index);
 
 // Throws Error{code} beginning with `what` unless all indices point into the model, all numbers are
 // finite and normals are of unit length: what a Recognizer may rely on.

@@ -1,14 +1,11 @@
 #include "store/model_changes.hpp"
 
-#include <span>
-
 #include "engine/base/error.hpp"
 #include "store/model_bytes.hpp"
 #include "store/model_rows.hpp"
 #include "store/names.hpp"
 #include "store/scene_changes.hpp"
 #include "store/scene_rows.hpp"
-#include "store/sha256.hpp"
 #include "store/utf8.hpp"
 
 namespace landmarkdb {
@@ -19,15 +16,6 @@ using sqlite::Statement;
 using sqlite::Transaction;
 
 constexpr auto kWrite = Transaction::Kind::kWrite;
-
-// Over the version and parameters too: a blob must not be read as another layout's.
-std::string index_digest(const ModelIndexBlob& index) {
-  Sha256 digest;
-  const std::string head = std::to_string(index.version) + "\n" + index.params + "\n";
-  digest.update(std::as_bytes(std::span(head)));
-  digest.update(index.quads);
-  return digest.finish();
-}
 
 }  // namespace
 
@@ -77,34 +65,6 @@ void rename_model(const Database& database, std::string_view old_name, std::stri
   update.run();
   raise_generation(database);
   transaction.commit();
-}
-
-void save_model_index(const Database& database,
-                      std::int64_t model_id,
-                      const ModelIndexBlob& index) {
-  const std::string digest = index_digest(index);
-  Transaction transaction(database, kWrite);
-  Statement insert(database,
-                   "INSERT OR REPLACE INTO mono_index (model_id, version, params, quads, digest) "
-                   "VALUES (?, ?, ?, ?, ?)");
-  insert.bind(model_id).bind(index.version).bind(index.params);
-  insert.bind(std::span<const std::byte>(index.quads)).bind(digest);
-  insert.run();
-  transaction.commit();
-}
-
-std::optional<ModelIndexBlob> load_model_index(const Database& database, std::int64_t model_id) {
-  Statement row(database,
-                "SELECT version, params, quads, digest FROM mono_index WHERE model_id = ?");
-  row.bind(model_id);
-  if (!row.step()) return std::nullopt;
-  ModelIndexBlob index;
-  index.version = row.integer(0);
-  index.params = row.text(1);
-  const std::span<const std::byte> quads = row.blob(2);
-  index.quads.assign(quads.begin(), quads.end());
-  if (index_digest(index) != row.text(3)) return std::nullopt;
-  return index;
 }
 
 }  // namespace landmarkdb

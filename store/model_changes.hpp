@@ -24,12 +24,4 @@ void rename_model(const sqlite::Database& database,
                   std::string_view old_name,
                   std::string_view new_name);
 
-// The search index of a model; it is derived, so the generation stays.
-void save_model_index(const sqlite::Database& database,
-                      std::int64_t model_id,
-                      const ModelIndexBlob& index);
-// Nothing where there is none, or where its digest says that it is damaged.
-std::optional<ModelIndexBlob> load_model_index(const sqlite::Database& database,
-                                               std::int64_t model_id);
-
 }  // namespace landmarkdb

@@ -6,7 +6,6 @@
 
 #include "engine/base/error.hpp"
 #include "store/model_bytes.hpp"
-#include "store/model_changes.hpp"
 #include "store/model_rows.hpp"
 #include "store/scene_changes.hpp"
 
@@ -69,9 +68,8 @@ void check_model(const Database& database, const ModelRow& row, CheckReport& rep
     report.findings.push_back(
         row.what() + ": its edge masks disagree with its edges; `repair` writes them anew");
   }
-  if (has_index(database, row) && !load_model_index(database, row.id)) {
-    report.findings.push_back(row.what() +
-                              ": its search index is damaged; `repair` drops it, it is made anew");
+  if (has_index(database, row) && !read_model_index_row(database, row)) {
+    report.findings.push_back(row.what() + ": its search index is damaged; `repair` makes it anew");
   }
   if (row.damage) {
     report.findings.push_back(row.what() + " is marked as damaged (" + *row.damage +
@@ -96,10 +94,27 @@ void write_masks(const Database& database, const ModelRow& row, const MonoModel&
   }
 }
 
+// What was done to the index, where anything had to be.
+std::optional<std::string> renew_index(const Database& database,
+                                       const ModelRow& row,
+                                       const MonoModel& model,
+                                       const ModelDeriver& deriver,
+                                       const RunContext& context) {
+  const std::optional<ModelIndexBlob> index = read_model_index_row(database, row);
+  if (deriver.index) {
+    if (index && index->is_made_like(deriver.index_format)) return std::nullopt;
+    write_model_index(database, row.id, row.sha256, deriver.index(model, context));
+    return row.what() + ": its search index was made anew";
+  }
+  if (index || !has_index(database, row)) return std::nullopt;
+  database.execute("DELETE FROM mono_index WHERE model_id = " + std::to_string(row.id));
+  return row.what() + ": its damaged search index was dropped";
+}
+
 class ModelRepair {
  public:
-  ModelRepair(const Database& database, const RunContext& context, const MakeTriples& make_triples)
-      : database_(database), context_(context), make_triples_(make_triples) {}
+  ModelRepair(const Database& database, const RunContext& context, const ModelDeriver& deriver)
+      : database_(database), context_(context), deriver_(deriver) {}
 
   void run(const ModelRow& row, RepairReport& report) const {
     Transaction transaction(database_, Transaction::Kind::kWrite);
@@ -122,8 +137,8 @@ class ModelRepair {
  private:
   void repair_derived(const ModelRow& row, const MonoModel& model, RepairReport& report) const {
     if (const auto triples = damage_of([&] { read_model_record(database_, row); })) {
-      if (make_triples_) {
-        write_triples(database_, row.id, make_triples_(model, context_), context_);
+      if (deriver_.triples) {
+        write_triples(database_, row.id, deriver_.triples(model, context_), context_);
         report.repaired.push_back(row.what() + ": its triples were made anew");
       } else {
         report.remaining.push_back(*triples);
@@ -133,9 +148,8 @@ class ModelRepair {
       write_masks(database_, row, model);
       report.repaired.push_back(row.what() + ": its edge masks were written anew");
     }
-    if (has_index(database_, row) && !load_model_index(database_, row.id)) {
-      database_.execute("DELETE FROM mono_index WHERE model_id = " + std::to_string(row.id));
-      report.repaired.push_back(row.what() + ": its damaged search index was dropped");
+    if (const auto done = renew_index(database_, row, model, deriver_, context_)) {
+      report.repaired.push_back(*done);
     }
     if (row.damage) {
       mark(database_, row, std::nullopt);
@@ -145,7 +159,7 @@ class ModelRepair {
 
   const Database& database_;
   const RunContext& context_;
-  const MakeTriples& make_triples_;
+  const ModelDeriver& deriver_;
 };
 
 }  // namespace
@@ -167,7 +181,7 @@ void check_models(const Database& database, const RunContext& context, CheckRepo
 
 void repair_models(const Database& database,
                    const RunContext& context,
-                   const MakeTriples& make_triples,
+                   const ModelDeriver& deriver,
                    RepairReport& report) {
   for (const char* table : kTables) {
     database.execute("DELETE " + orphans(table));
@@ -179,8 +193,27 @@ void repair_models(const Database& database,
   }
   for (const ModelRow& row : read_model_rows(database)) {
     context.check("repair");
-    ModelRepair(database, context, make_triples).run(row, report);
+    ModelRepair(database, context, deriver).run(row, report);
   }
+}
+
+std::vector<std::string> renew_model_indexes(const Database& database,
+                                             const RunContext& context,
+                                             const ModelDeriver& deriver) {
+  std::vector<std::string> renewed;
+  const std::vector<ModelRow> rows = read_model_rows(database);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    context.report("index", i, rows.size());
+    if (rows[i].damage) continue;
+    Transaction transaction(database, Transaction::Kind::kWrite);
+    MonoModel model;
+    if (damage_of([&] { model = read_model_tables(database, rows[i]); })) continue;
+    const auto done = renew_index(database, rows[i], model, deriver, context);
+    if (!done) continue;
+    renewed.push_back(*done);
+    transaction.commit();
+  }
+  return renewed;
 }
 
 }  // namespace landmarkdb

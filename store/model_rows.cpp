@@ -245,11 +245,26 @@ std::vector<ModelTriple> read_triples(const Database& database, const ModelRow& 
   return triples;
 }
 
+std::optional<ModelIndexBlob> read_model_index_row(const Database& database, const ModelRow& row) {
+  Statement rows(database,
+                 "SELECT version, params, quads, digest FROM mono_index WHERE model_id = ?");
+  rows.bind(row.id);
+  if (!rows.step()) return std::nullopt;
+  ModelIndexBlob index;
+  index.version = rows.integer(0);
+  index.params = rows.text(1);
+  const std::span<const std::byte> quads = rows.blob(2);
+  index.quads.assign(quads.begin(), quads.end());
+  if (index_digest(row.sha256, index) != rows.text(3)) return std::nullopt;
+  return index;
+}
+
 std::shared_ptr<const MonoModelRecord> read_model_record(const Database& database,
                                                          const ModelRow& row) {
   auto record = std::make_shared<MonoModelRecord>();
   record->model = read_model_tables(database, row);
   record->triples = read_triples(database, row);
+  record->index = read_model_index_row(database, row);
   validate_model(*record, row.what(), ErrorCode::kDataLoss);
   return record;
 }
@@ -277,6 +292,7 @@ std::int64_t write_model(const Database& database,
   write_points(database, id, model);
   write_shapes(database, id, model);
   write_triples(database, id, record.triples, context);
+  if (record.index) write_model_index(database, id, digest, *record.index);
   return id;
 }
 
@@ -309,6 +325,19 @@ void write_triples(const Database& database,
   Statement update(database, "UPDATE mono_model SET triples_digest = ? WHERE id = ?");
   update.bind(digest).bind(model_id);
   update.run();
+}
+
+void write_model_index(const Database& database,
+                       std::int64_t model_id,
+                       const std::string& model_sha256,
+                       const ModelIndexBlob& index) {
+  const std::string digest = index_digest(model_sha256, index);
+  Statement insert(database,
+                   "INSERT OR REPLACE INTO mono_index (model_id, version, params, quads, digest) "
+                   "VALUES (?, ?, ?, ?, ?)");
+  insert.bind(model_id).bind(index.version).bind(index.params);
+  insert.bind(std::span<const std::byte>(index.quads)).bind(digest);
+  insert.run();
 }
 
 void delete_model(const Database& database, std::int64_t model_id) {

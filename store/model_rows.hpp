@@ -37,7 +37,11 @@ ModelSummary read_model_summary(const sqlite::Database& database, std::int64_t m
 MonoModel read_model_tables(const sqlite::Database& database, const ModelRow& row);
 // Its triples, with their digest checked.
 std::vector<ModelTriple> read_triples(const sqlite::Database& database, const ModelRow& row);
-// Both, and they fit together.
+// Its search index; nothing where there is none, or where its digest says that it is damaged or of
+// another model.
+std::optional<ModelIndexBlob> read_model_index_row(const sqlite::Database& database,
+                                                   const ModelRow& row);
+// All three, and they fit together.
 std::shared_ptr<const MonoModelRecord> read_model_record(const sqlite::Database& database,
                                                          const ModelRow& row);
 
@@ -51,6 +55,12 @@ void write_triples(const sqlite::Database& database,
                    std::int64_t model_id,
                    const std::vector<ModelTriple>& triples,
                    const RunContext& context);
+
+// Replaces a model's search index; it is derived, so the generation stays.
+void write_model_index(const sqlite::Database& database,
+                       std::int64_t model_id,
+                       const std::string& model_sha256,
+                       const ModelIndexBlob& index);
 
 void delete_model(const sqlite::Database& database, std::int64_t model_id);
 

@@ -48,14 +48,11 @@ struct DamagedModel {
 };
 using OnDamagedModel = std::function<void(const DamagedModel&)>;
 
-// Makes a model's triples anew; the store keeps them but does not know how they are derived.
-using MakeTriples = std::function<std::vector<ModelTriple>(const MonoModel&, const RunContext&)>;
-
-// A search index of one model, derived from it: may be deleted, and is then made anew.
-struct ModelIndexBlob {
-  std::int64_t version = 0;  // of its layout, whoever writes it
-  std::string params;        // what it was made with, free text
-  std::vector<std::byte> quads;
+// How what is derived from a model is made; the store keeps it but does not know how.
+struct ModelDeriver {
+  std::function<std::vector<ModelTriple>(const MonoModel&, const RunContext&)> triples{};
+  std::function<ModelIndexBlob(const MonoModel&, const RunContext&)> index{};
+  ModelIndexBlob index_format{};  // version and params of what `index` makes
 };
 
 }  // namespace landmarkdb

@@ -159,7 +159,7 @@ void note_inactive_scenes(const Database& database, RepairReport& report) {
 
 RepairReport repair_database(const Database& database,
                              const RunContext& context,
-                             const MakeTriples& make_triples) {
+                             const ModelDeriver& deriver) {
   RepairReport report;
   context.check("repair");
   attempt(report, [&] { repair_schema(database, report); });
@@ -174,7 +174,7 @@ RepairReport repair_database(const Database& database,
     }
     note_inactive_scenes(database, report);
   });
-  attempt(report, [&] { repair_models(database, context, make_triples, report); });
+  attempt(report, [&] { repair_models(database, context, deriver, report); });
   return report;
 }
 

@@ -10,6 +10,6 @@ namespace landmarkdb {
 // Store::repair. Each kind of repair is a transaction of its own.
 RepairReport repair_database(const sqlite::Database& database,
                              const RunContext& context,
-                             const MakeTriples& make_triples);
+                             const ModelDeriver& deriver);
 
 }  // namespace landmarkdb

@@ -7,6 +7,7 @@
 #include "store/catalog.hpp"
 #include "store/check.hpp"
 #include "store/migrations.hpp"
+#include "store/model_check.hpp"
 #include "store/names.hpp"
 #include "store/open.hpp"
 #include "store/output_file.hpp"
@@ -155,16 +156,17 @@ CheckReport Store::check(const RunContext& context) const {
   return check_database(state_->reader(), context);
 }
 
-RepairReport Store::repair(const RunContext& context, const MakeTriples& make_triples) {
-  return repair_database(state_->writer(), context, make_triples);
+RepairReport Store::repair(const RunContext& context, const ModelDeriver& deriver) {
+  return repair_database(state_->writer(), context, deriver);
 }
 
-OptimizeReport Store::optimize(const RunContext& context) {
+OptimizeReport Store::optimize(const RunContext& context, const ModelDeriver& deriver) {
   const sqlite::Database& database = state_->writer();
   OptimizeReport report;
   report.bytes_before = size().database_bytes;
   context.check("optimize");
   report.dropped = drop_old_versions(database);
+  report.renewed = renew_model_indexes(database, context, deriver);
   try {
     const sqlite::InterruptGuard guard(database, context);
     database.execute("ANALYZE");

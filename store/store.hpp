@@ -113,20 +113,19 @@ class Store {
                                  const RunContext& context);
   void remove_model(std::string_view name);
   void rename_model(std::string_view old_name, std::string_view new_name);
-  // A search index derived from a model; nothing where none is stored or it is damaged.
-  void save_model_index(std::int64_t model_id, const ModelIndexBlob& index);
-  std::optional<ModelIndexBlob> load_model_index(std::int64_t model_id) const;
 
   // Reads everything: pages, references, digests, shapes. Finds damage, never throws for it (but
   // for a file too broken to be opened at all). Reports the stage "check" in bytes.
   CheckReport check(const RunContext& context) const;
   // Rebuilds what is derived, drops what nothing refers to, marks damaged versions and models so
   // that they are not served. Never removes a scene or model or changes which version is active.
-  // Damaged triples of models are made anew where `make_triples` says how.
-  RepairReport repair(const RunContext& context, const MakeTriples& make_triples = {});
+  // Damaged triples of models, and missing or outdated search indexes, are made anew where
+  // `deriver` says how.
+  RepairReport repair(const RunContext& context, const ModelDeriver& deriver = {});
   // Lets go of versions other than the active one and the one `rollback` would go to, and gives the
-  // space back. Needs free disk space as large as the database for the time it runs.
-  OptimizeReport optimize(const RunContext& context);
+  // space back; makes search indexes of models as repair() does. Needs free disk space as large as
+  // the database for the time it runs.
+  OptimizeReport optimize(const RunContext& context, const ModelDeriver& deriver = {});
 
   // Brings what was written so far into the database file itself and empties the log beside it;
   // Error{kUnavailable} while another connection reads or writes.

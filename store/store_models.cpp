@@ -46,12 +46,4 @@ void Store::rename_model(std::string_view old_name, std::string_view new_name) {
   landmarkdb::rename_model(state_->writer(), old_name, new_name);
 }
 
-void Store::save_model_index(std::int64_t model_id, const ModelIndexBlob& index) {
-  landmarkdb::save_model_index(state_->writer(), model_id, index);
-}
-
-std::optional<ModelIndexBlob> Store::load_model_index(std::int64_t model_id) const {
-  return landmarkdb::load_model_index(state_->reader(), model_id);
-}
-
 }  // namespace landmarkdb

@@ -93,6 +93,7 @@ struct RepairReport {
 
 struct OptimizeReport {
   std::vector<std::string> dropped;  // versions that were let go, one sentence each
+  std::vector<std::string> renewed;  // search indexes of models that were made, the same
   std::uint64_t bytes_before = 0;    // of the database file
   std::uint64_t bytes_after = 0;
 };

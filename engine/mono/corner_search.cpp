@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "engine/mono/refine_pose.hpp"
 #include "engine/mono/triple_pose.hpp"
@@ -208,11 +209,11 @@ std::vector<Proposal> best_of(std::vector<Proposal> proposals,
 CornerModel prepare_corners(const SearchModel& search) {
   const MonoModel& model = search.model();
   CornerModel prepared;
-  std::vector<std::array<std::uint32_t, 3>> known;
+  std::set<std::array<std::uint32_t, 3>> known;
   for (const ModelTriple& triple : search.record->triples) {
     const auto [i0, i1, i2] = triple.points;
     if (!search.linked(i0, i1) || !search.linked(i0, i2)) continue;
-    if (std::find(known.begin(), known.end(), triple.points) != known.end()) continue;
+    if (known.contains(triple.points)) continue;
     prepared.corners.push_back(triple);
     for (const Eigen::Matrix4d& T : model.symmetries) {
       std::array<std::uint32_t, 3> image{};
@@ -221,7 +222,7 @@ CornerModel prepare_corners(const SearchModel& search) {
             nearest_point(model, (T * model.points[triple.points[k]].xyz.homogeneous()).head<3>());
       }
       if (image[1] > image[2]) std::swap(image[1], image[2]);
-      known.push_back(image);
+      known.insert(image);
     }
   }
   if (!prepared.corners.empty()) prepared.outline.emplace(search);

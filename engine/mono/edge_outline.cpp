@@ -7,9 +7,7 @@ namespace landmarkdb {
 namespace {
 
 constexpr double kCell_px = 2.0;
-constexpr unsigned kDirections = 8;      // of 22.5 degrees, over half a turn
-constexpr std::size_t kMostPlaces = 96;  // of a model: some forty are seen at once
-constexpr double kFarViews = 6.0;        // radii away the views are taken from
+constexpr unsigned kDirections = 8;  // of 22.5 degrees, over half a turn
 
 // The number of the direction class of a line, whichever way it points.
 unsigned class_of(double x, double y) {
@@ -63,32 +61,13 @@ bool EdgeDirections::runs(const Eigen::Vector2d& uv, const Eigen::Vector2d& tang
   return ((bits_[y * columns_ + x] >> class_of(tangent.x(), tangent.y())) & 1U) != 0;
 }
 
-EdgeOutline::EdgeOutline(const SearchModel& search) : center_(search.center) {
-  const MonoModel& model = search.model();
-  double length_m = 0.0;
-  const auto edge_length = [&](const std::array<std::uint32_t, 2>& edge) {
-    return (model.points[edge[1]].xyz - model.points[edge[0]].xyz).norm();
-  };
-  for (const auto& edge : model.edges) length_m += edge_length(edge);
-  const double step_m = length_m / static_cast<double>(kMostPlaces);
-  if (!(step_m > 0.0)) return;
-  for (const auto& edge : model.edges) {
-    const Eigen::Vector3d from = model.points[edge[0]].xyz;
-    const Eigen::Vector3d along = model.points[edge[1]].xyz - from;
-    const double length = edge_length(edge);
-    const auto count = static_cast<std::size_t>(std::max(1.0, std::round(length / step_m)));
-    for (std::size_t i = 0; i < count; ++i) {
-      const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-      places_.push_back({from + at * along, along / length});
-    }
-  }
-  for (const Eigen::Vector3d& direction : model_views()) {
-    const Eigen::Vector3d eye = center_ + kFarViews * search.radius_m * direction;
+EdgeOutline::EdgeOutline(const SearchModel& search)
+    : places_(outline_places(search.model())), center_(search.center) {
+  if (places_.empty()) return;
+  for (std::size_t view = 0; view < kModelViews; ++view) {
     std::vector<std::uint16_t> ids;
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      if (search.visibility.place_seen_from(places_[i].xyz, eye)) {
-        ids.push_back(static_cast<std::uint16_t>(i));
-      }
+      if (search.outline_seen[i][view]) ids.push_back(static_cast<std::uint16_t>(i));
     }
     // A stride that shares no factor with most counts: the first dozen speak for all edges.
     std::vector<std::uint16_t> mixed;

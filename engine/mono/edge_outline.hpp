@@ -8,6 +8,7 @@
 
 #include "engine/geometry/camera.hpp"
 #include "engine/mono/image_features.hpp"
+#include "engine/mono/outline_places.hpp"
 #include "engine/mono/rigid_pose.hpp"
 #include "engine/mono/search_model.hpp"
 
@@ -31,7 +32,7 @@ class EdgeDirections {
 };
 
 // A model's edges as some dozens of places, with what each view shows of them: what a pose's
-// outline is quickly compared by. Built once a model: 256 views of all places.
+// outline is quickly compared by. Built once a model, from the search tables' views of the places.
 class EdgeOutline {
  public:
   explicit EdgeOutline(const SearchModel& model);
@@ -44,10 +45,7 @@ class EdgeOutline {
                double enough) const;
 
  private:
-  struct Place {
-    Eigen::Vector3d xyz, along;  // metres; unit
-  };
-  std::vector<Place> places_;
+  std::vector<OutlinePlace> places_;
   std::vector<std::vector<std::uint16_t>> seen_;  // by view
   Eigen::Vector3d center_;
 };

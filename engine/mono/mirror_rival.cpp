@@ -1,29 +1,15 @@
 #include "engine/mono/mirror_rival.hpp"
 
-#include <algorithm>
 #include <vector>
 
 namespace landmarkdb {
-namespace {
 
-Eigen::Vector3d reflected(const Eigen::Vector3d& xyz) { return {-xyz.x(), xyz.y(), xyz.z()}; }
-
-}  // namespace
-
-SearchModel prepare_mirror(const MonoModelRecord& record) {
+SearchModel prepare_mirror(const MonoModelRecord& record, const SearchTables& tables) {
   auto mirror = std::make_shared<MonoModelRecord>();
-  mirror->model = record.model;
-  MonoModel& model = mirror->model;
-  for (ModelFeature& point : model.points) {
-    point.xyz = reflected(point.xyz);
-    if (point.normal) point.normal = reflected(*point.normal);
-  }
-  for (ModelCircle& circle : model.circles) {
-    circle.center = reflected(circle.center);
-    circle.normal = reflected(circle.normal);
-  }
-  for (std::vector<std::uint32_t>& face : model.faces) std::reverse(face.begin(), face.end());
-  return prepare_model(mirror, 0);
+  mirror->model = mirror_image(record.model);
+  SearchTables mirror_tables;  // nothing is looked up by its quads
+  mirror_tables.seen = tables.mirror_seen;
+  return prepare_model(mirror, mirror_tables);
 }
 
 RigidPose mirror_pose(const SearchModel& model, const RigidPose& pose) {

@@ -11,7 +11,8 @@ namespace landmarkdb {
 
 // The mirror image (x -> -x) of a model, as the search sees it. No catalogue holds it: it stands
 // for the left-hand part where the right-hand one is known, and for all that looks like it.
-SearchModel prepare_mirror(const MonoModelRecord& record);
+// `tables` are the model's.
+SearchModel prepare_mirror(const MonoModelRecord& record, const SearchTables& tables);
 
 // Where the mirror image stands when it looks, from far away, as the model does at `pose`:
 // reflected in the plane through the model's center that faces the camera. Front and back are

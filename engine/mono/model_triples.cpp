@@ -29,7 +29,7 @@ class TripleMaker {
   }
 
   std::vector<ModelTriple> make(const RunContext& context) {
-    const std::vector<ViewMask> views = views_of_points(context);
+    const std::vector<ViewMask> views = views_of_points(model_, "triples", context);
     for (std::uint32_t i = 0; i < neighbours_.size(); ++i) add_junction(i);
     for (std::uint32_t f = 0; f < corners_.size(); ++f) {
       context.check("triples");
@@ -52,17 +52,6 @@ class TripleMaker {
 
  private:
   int linked(std::uint32_t a, std::uint32_t b) const { return neighbours_[a].contains(b) ? 1 : 0; }
-
-  std::vector<ViewMask> views_of_points(const RunContext& context) const {
-    const ModelVisibility visibility(model_);
-    std::vector<ViewMask> masks(model_.points.size());
-    for (std::size_t view = 0; view < kModelViews; ++view) {
-      context.report("triples", view, kModelViews);
-      const std::vector<bool> seen = visibility.points_along(model_views()[view]);
-      for (std::size_t i = 0; i < seen.size(); ++i) masks[i].set(view, seen[i]);
-    }
-    return masks;
-  }
 
   // The lowest face that has all three among its corners; -1: none.
   std::int32_t face_of(const Points& points) const {

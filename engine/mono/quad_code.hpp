@@ -8,6 +8,16 @@
 
 namespace landmarkdb {
 
+// Which of the six pairs of four points `linked(a, b)` joins: AB, AC, AD, BC, BD, CD, AB lowest.
+template <typename Ids, typename Linked>
+std::uint8_t link_mask(const Ids& ids, const Linked& linked) {
+  unsigned mask = 0, bit = 1;
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = a + 1; b < 4; ++b, bit <<= 1U) mask |= linked(ids[a], ids[b]) ? bit : 0U;
+  }
+  return static_cast<std::uint8_t>(mask);
+}
+
 // What four image points look like, whatever their shift, turn and scale (Lang et al. 2010 for
 // stars): the two furthest apart, A and B, are put at (0,0) and (1,1), and the code is where C and
 // D then lie. A and B are ordered so that Cx + Dx <= 1, then C and D so that Cx <= Dx.

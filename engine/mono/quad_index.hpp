@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/run_context.hpp"
 #include "engine/mono/quad_code.hpp"
 #include "engine/mono/search_model.hpp"
 
@@ -29,10 +30,11 @@ struct ModelQuad {
 
 // All quads of all models, by type signature and cell of the code.
 //
-// Built once a catalogue; const members are thread-safe. 44 bytes a quad, at most 60 a view.
+// Built once a catalogue; const members are thread-safe. 44 bytes a quad, at most 150 a view.
 class QuadIndex {
  public:
-  explicit QuadIndex(std::span<const SearchModel> models, int threads = 1);
+  // On `context.threads` threads; throws what `context.check` does.
+  explicit QuadIndex(std::span<const SearchModel> models, const RunContext& context = {});
 
   // Calls visit(quad) for each stored quad of this signature whose code is within `tolerance` of
   // `code` in each coordinate.
@@ -53,30 +55,15 @@ class QuadIndex {
     return at <= 0.0 ? 0 : std::min(kCells - 1, static_cast<std::size_t>(at));
   }
 
+  // Sorts quads of one signature and first cell, which lie at [begin, end), by the other cells.
+  void sort_slab(std::size_t slab, std::uint32_t begin, std::uint32_t end);
+
   std::vector<ModelQuad> quads_;
   std::array<std::int32_t, 256> block_of_{};  // by signature; -1: no such quads
-  std::vector<std::uint32_t> starts_;         // kBlock + 1 a block, into quads_
+  std::vector<std::uint32_t> starts_;         // kBlock cells and an end a block, into quads_
 };
 
-// Of the points in a pair's circle, those that are looked at where no links guide: nearest to its
-// middle.
-inline constexpr std::size_t kNearMiddle = 9;
-
-// Whether a model's quads are chosen by its edges: two among the four points. Models without edges
-// have quads of any near points.
-bool is_linked(const MonoModel& model);
-
-// Which of the six pairs of four points `linked(a, b)` joins: AB, AC, AD, BC, BD, CD, AB lowest.
-template <typename Ids, typename Linked>
-std::uint8_t link_mask(const Ids& ids, const Linked& linked) {
-  unsigned mask = 0, bit = 1;
-  for (std::size_t a = 0; a < 4; ++a) {
-    for (std::size_t b = a + 1; b < 4; ++b, bit <<= 1U) mask |= linked(ids[a], ids[b]) ? bit : 0U;
-  }
-  return static_cast<std::uint8_t>(mask);
-}
-
-// The quads of one model, as the index stores them; `number` is its index.
+// The chosen quads of one model, view by view, as the index stores them; `number` is its index.
 std::vector<ModelQuad> quads_of(const SearchModel& model, std::uint32_t number);
 
 template <typename Visit>

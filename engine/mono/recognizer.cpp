@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/base/error.hpp"
+#include "engine/base/parallel.hpp"
 #include "engine/mono/answer.hpp"
 #include "engine/mono/candidate_pool.hpp"
 #include "engine/mono/corner_search.hpp"
@@ -17,6 +19,7 @@
 #include "engine/mono/quad_index.hpp"
 #include "engine/mono/rivals.hpp"
 #include "engine/mono/search_model.hpp"
+#include "engine/mono/search_tables.hpp"
 #include "engine/mono/vote_search.hpp"
 
 namespace landmarkdb {
@@ -59,17 +62,45 @@ void check_request(const ImageFeatures& features,
   }
 }
 
+// What is worked out of each model, in the catalogue's order.
+struct Prepared {
+  std::vector<SearchModel> models;
+  std::vector<SearchModel> mirrors;
+  std::vector<CornerModel> corners;
+};
+
+Prepared prepare(const MonoCatalog& catalog, const RunContext& context) {
+  struct One {
+    SearchModel model, mirror;
+    CornerModel corners;
+  };
+  RunContext quiet = context;  // progress is told from the calling thread only
+  quiet.progress = nullptr;
+  std::vector<std::optional<One>> made(catalog.entries.size());
+  parallel_chunks(made.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::shared_ptr<const MonoModelRecord>& record = catalog.entries[i].record;
+      const SearchTables tables = tables_of(*record, quiet);
+      SearchModel model = prepare_model(record, tables);
+      CornerModel corners = prepare_corners(model);
+      made[i] = One{std::move(model), prepare_mirror(*record, tables), std::move(corners)};
+    }
+  });
+  Prepared prepared;
+  for (std::optional<One>& one : made) {
+    prepared.models.push_back(std::move(one->model));
+    prepared.mirrors.push_back(std::move(one->mirror));
+    prepared.corners.push_back(std::move(one->corners));
+  }
+  return prepared;
+}
+
 }  // namespace
 
 class Recognizer::Impl {
  public:
-  explicit Impl(std::shared_ptr<const MonoCatalog> catalog)
-      : catalog_(std::move(catalog)),
-        models_(prepare(*catalog_)),
-        mirrors_(mirror_images(*catalog_)),
-        index_(models_) {
-    for (const SearchModel& model : models_) corner_models_.push_back(prepare_corners(model));
-  }
+  Impl(std::shared_ptr<const MonoCatalog> catalog, const RunContext& context)
+      : Impl(catalog, prepare(*catalog, context), context) {}
 
   RecognizeResult recognize(const ImageFeatures& features,
                             const Camera& camera,
@@ -77,18 +108,12 @@ class Recognizer::Impl {
                             const RunContext& run) const;
 
  private:
-  static std::vector<SearchModel> prepare(const MonoCatalog& catalog) {
-    std::vector<SearchModel> models;
-    for (const MonoCatalogEntry& entry : catalog.entries)
-      models.push_back(prepare_model(entry.record));
-    return models;
-  }
-  static std::vector<SearchModel> mirror_images(const MonoCatalog& catalog) {
-    std::vector<SearchModel> mirrors;
-    for (const MonoCatalogEntry& entry : catalog.entries)
-      mirrors.push_back(prepare_mirror(*entry.record));
-    return mirrors;
-  }
+  Impl(std::shared_ptr<const MonoCatalog> catalog, Prepared prepared, const RunContext& context)
+      : catalog_(std::move(catalog)),
+        models_(std::move(prepared.models)),
+        corner_models_(std::move(prepared.corners)),
+        mirrors_(std::move(prepared.mirrors)),
+        index_(models_, context) {}
   std::vector<char> wanted(const RecognizeOptions& options) const;
   bool search(const ImageView& image,
               std::span<const char> wanted,
@@ -217,8 +242,8 @@ RecognizeResult Recognizer::Impl::recognize(const ImageFeatures& features,
   return result;
 }
 
-Recognizer::Recognizer(std::shared_ptr<const MonoCatalog> catalog)
-    : impl_(std::make_unique<const Impl>(std::move(catalog))) {}
+Recognizer::Recognizer(std::shared_ptr<const MonoCatalog> catalog, const RunContext& context)
+    : impl_(std::make_unique<const Impl>(std::move(catalog), context)) {}
 
 Recognizer::~Recognizer() = default;
 

@@ -17,7 +17,9 @@ namespace landmarkdb {
 // thread-safe, and the same input and seed give the same answer.
 class Recognizer {
  public:
-  explicit Recognizer(std::shared_ptr<const MonoCatalog> catalog);
+  // On `context.threads` threads. Models whose index (MonoModelRecord) is missing or of another
+  // making have it made, some 10 ms each. Throws what `context.check` does.
+  explicit Recognizer(std::shared_ptr<const MonoCatalog> catalog, const RunContext& context = {});
   ~Recognizer();
 
   // Throws Error{kInvalidArgument} for a camera that does not fit the image's size, an unknown

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "engine/geometry/pose.hpp"
 
 namespace landmarkdb {
 namespace {
-
-constexpr double kLookalikeShare = 0.4;  // of the points: fewer make no rival
 
 // The nearest view by place on a cube around the object, worked out once: views are 11 degrees
 // apart, places of the cube half a degree to one, so a direction half way between two views may get
@@ -49,11 +49,21 @@ class ViewTable {
     const double at = 0.5 * (x + 1.0) * double{kAcross};
     return at <= 0.0 ? 0 : std::min(kAcross - 1, static_cast<std::size_t>(at));
   }
+  // Views come in equal steps of z, and each direction has one within 0.2 rad: the others need not
+  // be asked.
   static std::uint8_t find(const Eigen::Vector3d& direction) {
+    constexpr double kReach = 0.2 * double{kModelViews} / 2.0 + 1.0;
     const std::array<Eigen::Vector3d, kModelViews>& views = model_views();
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < kModelViews; ++i) {
-      if (views[i].dot(direction) > views[best].dot(direction)) best = i;
+    const double at = 0.5 * (1.0 - direction.z() / direction.norm()) * double{kModelViews};
+    const auto first = static_cast<std::size_t>(std::max(0.0, at - kReach));
+    const auto end = std::min(kModelViews, static_cast<std::size_t>(at + kReach));
+    std::size_t best = first;
+    double nearest = -2.0 * direction.norm();
+    for (std::size_t i = first; i < end; ++i) {
+      const double cosine = views[i].dot(direction);
+      if (cosine <= nearest) continue;
+      nearest = cosine;
+      best = i;
     }
     return static_cast<std::uint8_t>(best);
   }
@@ -63,21 +73,34 @@ class ViewTable {
 
 }  // namespace
 
-bool SearchModel::linked(std::uint32_t a, std::uint32_t b) const {
-  return std::binary_search(neighbours[a].begin(), neighbours[a].end(), b);
+SearchTables tables_of(const MonoModelRecord& record, const RunContext& context) {
+  if (record.index) {
+    if (std::optional<SearchTables> tables = read_model_index(*record.index, record.model)) {
+      return std::move(*tables);
+    }
+  }
+  return make_search_tables(record.model, context);
+}
+
+SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record) {
+  const SearchTables tables = tables_of(*record);
+  return prepare_model(std::move(record), tables);
 }
 
 SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record,
-                          std::size_t most_lookalikes) {
+                          const SearchTables& tables) {
   const MonoModel& model = record->model;
   SearchModel result{.record = record,
                      .visibility = ModelVisibility(model),
                      .points = {},
                      .neighbours = {},
+                     .joined = std::vector<char>(model.points.size() * model.points.size(), 0),
                      .seen = {},
-                     .center = Eigen::Vector3d::Zero(),
+                     .center = mean_point(model),
                      .radius_m = 0.0,
-                     .lookalikes = {}};
+                     .quads = tables.quads,
+                     .outline_seen = tables.outline_seen,
+                     .lookalikes = tables.lookalikes};
   for (const ModelFeature& feature : model.points) {
     PosePoint point;
     point.xyz = feature.xyz;
@@ -87,9 +110,7 @@ SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record,
       point.normal = circle.normal.normalized();
     }
     result.points.push_back(point);
-    result.center += feature.xyz;
   }
-  result.center /= std::max<double>(1.0, static_cast<double>(model.points.size()));
   for (const PosePoint& point : result.points) {
     result.radius_m = std::max(result.radius_m, (point.xyz - result.center).norm());
   }
@@ -97,21 +118,17 @@ SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record,
   for (const auto& [a, b] : model.edges) {
     result.neighbours[a].push_back(b);
     result.neighbours[b].push_back(a);
+    result.joined[a * model.points.size() + b] = result.joined[b * model.points.size() + a] = 1;
   }
   for (std::vector<std::uint32_t>& list : result.neighbours) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
-  for (const Eigen::Vector3d& direction : model_views()) {
-    const std::vector<bool> seen = result.visibility.points_along(direction);
-    std::vector<std::uint16_t> ids;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (seen[i]) ids.push_back(static_cast<std::uint16_t>(i));
+  result.seen.resize(kModelViews);
+  for (std::size_t view = 0; view < kModelViews; ++view) {
+    for (std::size_t i = 0; i < model.points.size(); ++i) {
+      if (tables.seen[i][view]) result.seen[view].push_back(static_cast<std::uint16_t>(i));
     }
-    result.seen.push_back(std::move(ids));
-  }
-  if (most_lookalikes > 0) {
-    result.lookalikes = find_lookalikes(model, kLookalikeShare, most_lookalikes);
   }
   return result;
 }

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/mono/pose_equations.hpp"
+#include "engine/mono/search_tables.hpp"
 #include "engine/mono/visibility.hpp"
 #include "engine/types/mono_model.hpp"
 
@@ -21,22 +22,24 @@ struct SearchModel {
   ModelVisibility visibility;
   std::vector<PosePoint> points;  // xyz, and radius and normal of a circle's centre
   std::vector<std::vector<std::uint32_t>> neighbours;  // of a point, along edges; ascending
+  std::vector<char> joined;                            // n x n: whether an edge joins two points
   std::vector<std::vector<std::uint16_t>> seen;        // by view: the points seen from there
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius_m = 0.0;  // of a sphere around center that holds all points
-  // Rigid motions that carry many points onto points, but not all: poses that a search may take for
-  // each other (the next place of a grid). Most points first.
-  std::vector<Eigen::Isometry3d> lookalikes;
+  std::vector<ChosenQuad> quads;
+  std::vector<ViewMask> outline_seen;         // SearchTables
+  std::vector<Eigen::Isometry3d> lookalikes;  // SearchTables
 
   const MonoModel& model() const { return record->model; }
-  bool linked(std::uint32_t a, std::uint32_t b) const;
+  bool linked(std::uint32_t a, std::uint32_t b) const { return joined[a * points.size() + b] != 0; }
 };
 
-// At most so many motions onto itself are kept as lookalikes.
-inline constexpr std::size_t kMostLookalikes = 48;
+// From the record's own index where it has one that fits, and else from a new one.
+SearchTables tables_of(const MonoModelRecord& record, const RunContext& context = {});
 
 SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record,
-                          std::size_t most_lookalikes = kMostLookalikes);
+                          const SearchTables& tables);
+SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record);
 
 // The number of the model view nearest to a direction (from the object to the camera, of any
 // length), to a degree. A look-up.

@@ -180,6 +180,19 @@ std::vector<bool> ModelVisibility::points_from(const Eigen::Vector3d& eye) const
   return result;
 }
 
+std::vector<ViewMask> views_of_points(const MonoModel& model,
+                                      std::string_view stage,
+                                      const RunContext& context) {
+  const ModelVisibility visibility(model);
+  std::vector<ViewMask> masks(model.points.size());
+  for (std::size_t view = 0; view < kModelViews; ++view) {
+    context.report(stage, view, kModelViews);
+    const std::vector<bool> seen = visibility.points_along(model_views()[view]);
+    for (std::size_t i = 0; i < seen.size(); ++i) masks[i].set(view, seen[i]);
+  }
+  return masks;
+}
+
 bool ModelVisibility::face_turned_to(std::size_t face, const Eigen::Vector3d& eye) const {
   return !faces_[face].solid || faces_[face].normal.dot(eye) > faces_[face].offset_m;
 }

@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "engine/base/run_context.hpp"
 #include "engine/types/mono_model.hpp"
 
 namespace landmarkdb {
@@ -67,5 +69,10 @@ class ModelVisibility {
   std::vector<std::vector<std::uint32_t>> faces_of_{};  // a point's
   double clearance_m_ = 0.0;                            // nearer than this nothing hides
 };
+
+// Of each point, which of model_views() see it. Reports the views as progress of `stage`.
+std::vector<ViewMask> views_of_points(const MonoModel& model,
+                                      std::string_view stage,
+                                      const RunContext& context);
 
 }  // namespace landmarkdb

@@ -73,10 +73,22 @@ struct ModelTriple {
   double min_sin = 0.0;  // smallest sine of the triangle's angles
 };
 
+// A search index of one model, derived from it: may be deleted, and is then made anew.
+struct ModelIndexBlob {
+  std::int64_t version = 0;  // of its layout, whoever writes it
+  std::string params{};      // what it was made with, free text
+  std::vector<std::byte> quads{};
+
+  bool is_made_like(const ModelIndexBlob& other) const {
+    return version == other.version && params == other.params;
+  }
+};
+
 // One model as stored and as searched.
 struct MonoModelRecord {
   MonoModel model;
   std::vector<ModelTriple> triples{};
+  std::optional<ModelIndexBlob> index{};  // none: made when it is needed
 };
 
 struct MonoCatalogEntry {

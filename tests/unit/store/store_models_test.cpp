@@ -140,21 +140,80 @@ TEST(StoreModels, ThatDoNotFitTogetherAreRefusedWhole) {
   EXPECT_THAT(store.list_models(), IsEmpty());
 }
 
-TEST(StoreModels, KeepAnIndexUntilItIsDamagedOrTheModelGoes) {
+// What a deriver makes: the model's number of points, and nothing else.
+ModelIndexBlob index_of(const MonoModel& model, const RunContext&) {
+  return {3, "a maker", {std::byte{static_cast<unsigned char>(model.points.size())}}};
+}
+const ModelDeriver kDeriver{triples_of, index_of, {3, "a maker", {}}};
+
+MonoModelRecord indexed_model(const std::string& name) {
+  MonoModelRecord record = make_model(name);
+  record.index = index_of(record.model, {});
+  return record;
+}
+
+TEST(StoreModels, KeepTheirIndexUnderAnyName) {
+  Store store = Store::create_or_open(":memory:");
+  store.insert_model(indexed_model("tile"), {}, {});
+  store.insert_model(make_model("bolt"), {}, {});
+  store.rename_model("tile", "slab");
+  const auto record = store.load_model("slab");
+  ASSERT_TRUE(record->index);
+  EXPECT_TRUE(record->index->is_made_like(kDeriver.index_format));
+  EXPECT_EQ(record->index->quads, std::vector{std::byte{5}});
+  EXPECT_FALSE(store.load_model("bolt")->index);
+  ASSERT_EQ(store.load_models({})->entries.size(), 2U);
+  EXPECT_TRUE(store.load_models({})->entries[0].record->index);
+  EXPECT_TRUE(store.check({}).ok());
+  store.insert_model(make_model("slab"), {}, {});
+  EXPECT_FALSE(store.load_model("slab")->index);
+}
+
+// Damaged, of another model, another layout's under this one's number: never handed out.
+TEST(StoreModels, WithADamagedIndexAreServedWithoutIt) {
+  for (const char* sql : {"UPDATE mono_index SET quads = x'01'",
+                          "UPDATE mono_index SET quads = x'0502'",
+                          "UPDATE mono_index SET quads = x''",
+                          "UPDATE mono_index SET version = 4",
+                          "UPDATE mono_index SET params = 'another maker'",
+                          "UPDATE mono_index SET model_id = 1"}) {
+    const TempFolder folder;
+    const std::string path = folder.file("x.db");
+    Store store = Store::create_or_open(path);
+    store.insert_model(make_model("bolt", 0.2), {}, {});
+    store.insert_model(indexed_model("tile"), {}, {});
+    Database(path, OpenMode::kReadWrite, 0ms).execute(sql);
+    const auto catalog = store.load_models({});
+    ASSERT_EQ(catalog->entries.size(), 2U) << sql;
+    for (const MonoCatalogEntry& entry : catalog->entries) EXPECT_FALSE(entry.record->index) << sql;
+    EXPECT_THAT(store.check({}).findings, ElementsAre(HasSubstr("search index is damaged"))) << sql;
+    const std::uint64_t generation = store.generation();
+    EXPECT_THAT(store.optimize({}, kDeriver).renewed,
+                Contains(HasSubstr("search index was made anew")))
+        << sql;
+    EXPECT_EQ(store.generation(), generation) << sql;
+    EXPECT_EQ(store.load_model("tile")->index->quads, std::vector{std::byte{5}}) << sql;
+    EXPECT_TRUE(store.load_model("bolt")->index) << sql;
+    EXPECT_TRUE(store.check({}).ok()) << sql;
+  }
+}
+
+TEST(StoreModels, HaveAMissingOrOutdatedIndexMadeByRepair) {
   const TempFolder folder;
   const std::string path = folder.file("x.db");
   Store store = Store::create_or_open(path);
-  const auto id = store.insert_model(make_model("tile"), {}, {}).model_id;
-  EXPECT_FALSE(store.load_model_index(id));
-  const std::uint64_t generation = store.generation();
-  store.save_model_index(id, {3, "views=256", {std::byte{1}, std::byte{2}}});
-  EXPECT_EQ(store.generation(), generation);
-  ASSERT_TRUE(store.load_model_index(id));
-  EXPECT_EQ(store.load_model_index(id)->version, 3);
-  EXPECT_EQ(store.load_model_index(id)->quads.size(), 2U);
-  Database(path, OpenMode::kReadWrite, 0ms).execute("UPDATE mono_index SET quads = x'0103'");
-  EXPECT_FALSE(store.load_model_index(id));
-  EXPECT_THAT(store.check({}).findings, ElementsAre(HasSubstr("search index is damaged")));
+  store.insert_model(make_model("bolt"), {}, {});
+  MonoModelRecord old = indexed_model("tile");
+  old.index->version = 2;
+  store.insert_model(old, {}, {});
+  EXPECT_TRUE(store.check({}).ok());
+  EXPECT_THAT(store.repair({}, kDeriver).repaired,
+              ElementsAre(HasSubstr("'bolt': its search index was made"),
+                          HasSubstr("'tile': its search index was made")));
+  EXPECT_EQ(store.load_model("tile")->index->version, 3);
+  EXPECT_THAT(store.repair({}, kDeriver).repaired, IsEmpty());
+  Database(path, OpenMode::kReadWrite, 0ms)
+      .execute("UPDATE mono_index SET quads = x'0103' WHERE model_id = 2");
   EXPECT_THAT(store.repair({}).repaired, ElementsAre(HasSubstr("search index was dropped")));
   EXPECT_TRUE(store.check({}).ok());
 }
@@ -198,7 +257,7 @@ TEST_F(DamagedModels, AreFoundMarkedAndNotServed) {
         << sql;
     EXPECT_THAT(told, ElementsAre("tile")) << sql;
     EXPECT_EQ(error_of([&] { store.load_model("tile"); }).code, ErrorCode::kDataLoss) << sql;
-    const RepairReport repair = store.repair({}, triples_of);
+    const RepairReport repair = store.repair({}, {triples_of});
     EXPECT_THAT(repair.remaining, Contains(HasSubstr("model 'tile'"))) << sql;
     EXPECT_THAT(repair.repaired, Contains(HasSubstr("marked as damaged"))) << sql;
     EXPECT_TRUE(store.show_model("tile").damage) << sql;
@@ -224,7 +283,7 @@ TEST_F(DamagedModels, DerivedPartsAreMadeAnew) {
   Store store = Store::open_read_write(path_);
   EXPECT_FALSE(store.check({}).ok());
   EXPECT_EQ(error_of([&] { store.load_model("tile"); }).code, ErrorCode::kDataLoss);
-  const RepairReport report = store.repair({}, triples_of);
+  const RepairReport report = store.repair({}, {triples_of});
   EXPECT_THAT(report.remaining, IsEmpty());
   EXPECT_THAT(report.repaired, Contains(HasSubstr("'tile': its triples were made anew")));
   EXPECT_THAT(report.repaired, Contains(HasSubstr("'bolt': its edge masks")));

@@ -154,7 +154,7 @@ TEST(Recognizer, DoesNotTakeAMirroredModelForIt) {
 TEST(MirrorPose, LooksTheSameFromFarAway) {
   const MonoModelRecord& record = *catalog()->entries[4].record;
   const SearchModel model = prepare_model(catalog()->entries[4].record);
-  const SearchModel mirror = prepare_mirror(record);
+  const SearchModel mirror = prepare_mirror(record, tables_of(record));
   const RigidPose pose{rotation_from_vector({0.4, -1.1, 0.7}), Eigen::Vector3d(3.0, -2.0, 500.0)};
   const RigidPose other = mirror_pose(model, pose);
   EXPECT_NEAR(other.R.determinant(), 1.0, 1e-12);
