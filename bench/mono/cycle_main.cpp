@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/main_guard.hpp"
 #include "datasets/mono/render_model.hpp"
 #include "engine/base/error.hpp"
 #include "engine/geometry/pose.hpp"
@@ -170,12 +171,8 @@ int main(int argc, char** argv) {
   app.add_option("--clutter", clutter, "shapes behind the model")
       ->capture_default_str()
       ->check(CLI::Range(0, 1000));
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return cli::run_main(argc, argv, app, [&] {
     run(images, models, clutter);
-  } catch (const Error& error) {
-    std::fprintf(stderr, "landmarkdb-bench-mono-cycle: %s\n", error.what());
-    return exit_status(error.code());
-  }
-  return 0;
+    return 0;
+  });
 }

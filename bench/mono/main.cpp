@@ -1,5 +1,4 @@
-// landmarkdb-bench-mono: poses, recognition and the calibration of its confidence on generated
-// models.
+// landmarkdb-bench-mono: recognition and the calibration of its confidence on generated models.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,9 +10,9 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "bench/mono/poses.hpp"
 #include "bench/mono/recognition.hpp"
 #include "bench/retrieval/logistic.hpp"
+#include "cli/main_guard.hpp"
 #include "engine/base/error.hpp"
 
 namespace {
@@ -23,47 +22,11 @@ using namespace landmarkdb::bench;
 using nlohmann::json;
 
 struct Settings {
-  std::size_t poses = 1000, scenes = 300, models = 100;
+  std::size_t scenes = 300, models = 100;
   std::uint64_t seed = 10000;
   std::string json_file;
   std::string only;  // rows whose name has this in it
 };
-
-json pose_rows(const Settings& settings) {
-  json rows = json::array();
-  std::printf("%-18s %-17s %9s %9s %9s %9s %7s %7s %6s\n",
-              "points",
-              "method",
-              "turn deg",
-              "p95",
-              "shift mm",
-              "p95",
-              "wrong",
-              "unsaid",
-              "us");
-  for (const PoseColumn& c : run_poses(settings.poses, settings.seed)) {
-    std::printf("%-18s %-17s %9.3f %9.3f %9.2f %9.2f %6.2f%% %6.2f%% %6.1f\n",
-                c.points.c_str(),
-                c.method.c_str(),
-                c.turn_deg,
-                c.turn_p95_deg,
-                c.shift_mm,
-                c.shift_p95_mm,
-                100.0 * c.wrong,
-                100.0 * c.wrong_unsaid,
-                c.us);
-    rows.push_back({{"points", c.points},
-                    {"method", c.method},
-                    {"turn_deg", c.turn_deg},
-                    {"turn_p95_deg", c.turn_p95_deg},
-                    {"shift_mm", c.shift_mm},
-                    {"shift_p95_mm", c.shift_p95_mm},
-                    {"wrong", c.wrong},
-                    {"wrong_unsaid", c.wrong_unsaid},
-                    {"us", c.us}});
-  }
-  return rows;
-}
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
@@ -226,24 +189,18 @@ json calibrate(const Settings& settings) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App app{
-      "Poses and recognition of models in single images, on generated scenes from a seed."};
+  CLI::App app{"Recognition of models in single images, on generated scenes from a seed."};
   app.require_subcommand(1);
   app.add_option("--seed", settings.seed, "seed; nothing is tuned on those from 10000 on")
       ->capture_default_str();
   app.add_option("--models", settings.models, "models in the catalogue")->capture_default_str();
   app.add_option("--scenes", settings.scenes, "scenes a row")->capture_default_str();
   app.add_option("--only", settings.only, "rows of `recognition` whose name has this in it");
-  app.add_option("--poses", settings.poses, "poses a column")->capture_default_str();
   app.add_option("--json", settings.json_file, "write the figures to FILE");
-  app.add_subcommand("poses",
-                     "errors and time of four-point and n-point poses, against their bound");
   app.add_subcommand("recognition", "right, accepted and wrong answers by what is in the image");
   app.add_subcommand("calibrate", "fit the weights of the confidence");
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return cli::run_main(argc, argv, app, [&] {
     json result;
-    if (app.got_subcommand("poses")) result["poses"] = pose_rows(settings);
     if (app.got_subcommand("recognition")) result["recognition"] = recognition_rows(settings);
     if (app.got_subcommand("calibrate")) result["calibration"] = calibrate(settings);
     if (!settings.json_file.empty()) {
@@ -251,9 +208,6 @@ int main(int argc, char** argv) {
       file << result.dump(1) << "\n";
       if (!file) throw Error(ErrorCode::kUnavailable, settings.json_file + ": cannot be written");
     }
-  } catch (const Error& error) {
-    std::fprintf(stderr, "landmarkdb-bench-mono: %s\n", error.what());
-    return exit_status(error.code());
-  }
-  return 0;
+    return 0;
+  });
 }

@@ -15,8 +15,10 @@
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli/main_guard.hpp"
 #include "engine/base/error.hpp"
 #include "engine/geometry/pose.hpp"
 #include "engine/mono/model_triples.hpp"
@@ -173,18 +175,11 @@ int run(const std::filesystem::path& folder) {
 }  // namespace landmarkdb::bench
 
 int main(int argc, char** argv) {
-  const std::string folder = argc == 2 ? argv[1] : "";
-  if (folder.empty() || folder == "--help") {
-    std::printf(
-        "usage: landmarkdb-bench-mono-real FOLDER\n"
-        "Asks every monocular case of FOLDER (cases.json, database.json) and prints right,\n"
-        "wrong or declined, the errors modulo the model's symmetries, and the time.\n");
-    return folder.empty() ? 2 : 0;
-  }
-  try {
-    return landmarkdb::bench::run(folder);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return 1;
-  }
+  std::string folder;
+  CLI::App app{
+      "Asks every monocular case of FOLDER (cases.json, database.json) and prints right, wrong or "
+      "declined, the errors modulo the model's symmetries, and the time."};
+  app.name("landmarkdb-bench-mono-real");
+  app.add_option("FOLDER", folder, "A folder of real data")->required();
+  return landmarkdb::cli::run_main(argc, argv, app, [&] { return landmarkdb::bench::run(folder); });
 }

@@ -68,6 +68,30 @@ class CheckTestsListed(unittest.TestCase):
         self.assertEqual(0, run_on(files, "check_tests_listed.py")[0])
 
 
+class CheckTypes(unittest.TestCase):
+    def check(self, first, second):
+        return run_on({"engine/a.hpp": first, "server/b.cpp": second}, "check_types.py")
+
+    def test_names_the_second_of_two_types_of_one_name(self):
+        a = "namespace landmarkdb {\n// struct Not {\ntemplate <class T> struct Marker { int x; };\n}\n"
+        b = "namespace landmarkdb {\nclass Other;\nclass Marker final : public Base {\n};\n}\n"
+        message = "server/b.cpp:3: landmarkdb::Marker is also defined at engine/a.hpp:3\n"
+        self.assertEqual((1, message), self.check(a, b))
+        self.assertEqual(1, self.check("namespace a {\nnamespace b { enum class E : int { x }; } }", "namespace a::b { union E { }; }")[0])
+
+    def test_passes_types_that_are_apart(self):
+        a = "namespace landmarkdb { struct Marker { char c = '{'; }; }"
+        for b in (
+            "namespace landmarkdb { namespace { struct Marker { }; } }",
+            "namespace landmarkdb::bench { struct Marker { }; }",
+            "namespace landmarkdb { struct Marker; struct Use { struct Marker { }; }; }",
+            "namespace landmarkdb { void f() { struct Marker { }; } }",
+            "namespace landmarkdb { Marker make() { return {}; } Marker all[] = {{}}; }",
+            '// namespace landmarkdb { struct Marker { }; }\nauto text = R"(namespace landmarkdb { struct Marker { }; })";',
+        ):
+            self.assertEqual((0, ""), self.check(a, b), b)
+
+
 class SummariseTests(unittest.TestCase):
     def test_counts_what_ran_and_names_what_failed(self):
         status, output = run_on({"x.xml": JUNIT}, "summarise_tests.py", "x.xml")

@@ -66,17 +66,6 @@ std::string behind(const std::string& text, const std::string& mark) {
 
 }  // namespace
 
-TempFolder::TempFolder() {
-  std::string path = (std::filesystem::temp_directory_path() / "landmarkdb_XXXXXX").string();
-  if (mkdtemp(path.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  path_ = path;
-}
-
-TempFolder::~TempFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 nlohmann::json Outcome::json() const { return nlohmann::json::parse(out); }
 
 Running::Running(const std::string& program, const std::vector<std::string>& arguments) {

@@ -8,21 +8,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <sys/types.h>
 
+#include "tests/support/temp_folder.hpp"
+
 namespace landmarkdb::testing {
-
-// A folder of its own for one test, removed with all that is in it.
-class TempFolder {
- public:
-  TempFolder();
-  ~TempFolder();
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 // How a program ended. `status` is its exit status; 128 + n after signal n.
 struct Outcome {

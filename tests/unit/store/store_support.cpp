@@ -42,18 +42,6 @@ void fill_descriptors(DescriptorSet& set, std::size_t count, Random& random) {
 
 }  // namespace
 
-TempFolder::TempFolder() {
-  std::string pattern =
-      (std::filesystem::temp_directory_path() / "landmarkdb-test-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  path_ = pattern;
-}
-
-TempFolder::~TempFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 SceneRecord make_record(const std::string& name, std::uint64_t seed, RecordSize size) {
   Random random(seed);
   SceneRecord record;

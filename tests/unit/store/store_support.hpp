@@ -13,22 +13,9 @@
 #include "engine/base/error.hpp"
 #include "engine/base/random.hpp"
 #include "engine/types/scene_record.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace landmarkdb::testing {
-
-// A folder of its own for each test, removed with all that is in it.
-class TempFolder {
- public:
-  TempFolder();
-  ~TempFolder();
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 struct RecordSize {
   std::size_t points = 200;
