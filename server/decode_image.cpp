@@ -17,7 +17,15 @@ constexpr std::size_t kBytesPerPixel = 16;
 }  // namespace
 
 MemoryBudget::Lease reserve_image(const Camera& camera, MemoryBudget& memory) {
-  MemoryBudget::Lease lease = memory.reserve(kBytesPerPixel * camera.width * camera.height);
+  const std::size_t bytes = kBytesPerPixel * camera.width * camera.height;
+  if (bytes > memory.bytes()) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "an image of " + std::to_string(camera.width) + " x " +
+                    std::to_string(camera.height) + " pixels, the server takes at most " +
+                    std::to_string(memory.bytes() / kBytesPerPixel / 1'000'000) + " million pixels",
+                "image");
+  }
+  MemoryBudget::Lease lease = memory.reserve(bytes);
   if (!lease) {
     throw Error(ErrorCode::kResourceExhausted,
                 "the server has no memory left for an image of " + std::to_string(camera.width) +

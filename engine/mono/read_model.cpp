@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <new>
 #include <utility>
 
@@ -124,9 +125,10 @@ void require_at_most(const Input& input,
 
 void require_coordinate(const Input& input, double value, const std::string& what) {
   if (std::isfinite(value) && std::abs(value) <= kFarthest_m) return;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
   refuse(input,
-         what + " has the coordinate " + std::to_string(value) +
-             " m, want finite numbers within a million metres");
+         what + " has the coordinate " + text + " m, want finite numbers within a million metres");
 }
 
 ReadModelResult parse_model(std::span<const std::byte> bytes,

@@ -73,6 +73,21 @@ class ViewTable {
 
 }  // namespace
 
+std::vector<PosePoint> pose_points(const MonoModel& model) {
+  std::vector<PosePoint> points;
+  for (const ModelFeature& feature : model.points) {
+    PosePoint point;
+    point.xyz = feature.xyz;
+    if (feature.type == FeatureType::kConicCentre && feature.part >= 0) {
+      const ModelCircle& circle = model.circles[static_cast<std::size_t>(feature.part)];
+      point.radius_m = circle.radius_m;
+      point.normal = circle.normal.normalized();
+    }
+    points.push_back(point);
+  }
+  return points;
+}
+
 SearchTables tables_of(const MonoModelRecord& record, const RunContext& context) {
   if (record.index) {
     if (std::optional<SearchTables> tables = read_model_index(*record.index, record.model)) {
@@ -92,7 +107,7 @@ SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record,
   const MonoModel& model = record->model;
   SearchModel result{.record = record,
                      .visibility = ModelVisibility(model),
-                     .points = {},
+                     .points = pose_points(model),
                      .neighbours = {},
                      .joined = std::vector<char>(model.points.size() * model.points.size(), 0),
                      .seen = {},
@@ -101,16 +116,6 @@ SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record,
                      .quads = tables.quads,
                      .outline_seen = tables.outline_seen,
                      .lookalikes = tables.lookalikes};
-  for (const ModelFeature& feature : model.points) {
-    PosePoint point;
-    point.xyz = feature.xyz;
-    if (feature.type == FeatureType::kConicCentre && feature.part >= 0) {
-      const ModelCircle& circle = model.circles[static_cast<std::size_t>(feature.part)];
-      point.radius_m = circle.radius_m;
-      point.normal = circle.normal.normalized();
-    }
-    result.points.push_back(point);
-  }
   for (const PosePoint& point : result.points) {
     result.radius_m = std::max(result.radius_m, (point.xyz - result.center).norm());
   }

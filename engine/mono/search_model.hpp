@@ -34,6 +34,9 @@ struct SearchModel {
   bool linked(std::uint32_t a, std::uint32_t b) const { return joined[a * points.size() + b] != 0; }
 };
 
+// A model's points as they are measured: the centre of a circle by that of its ellipse.
+std::vector<PosePoint> pose_points(const MonoModel& model);
+
 // From the record's own index where it has one that fits, and else from a new one.
 SearchTables tables_of(const MonoModelRecord& record, const RunContext& context = {});
 

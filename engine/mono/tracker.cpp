@@ -9,6 +9,7 @@
 #include "engine/geometry/pose.hpp"
 #include "engine/mono/edge_search.hpp"
 #include "engine/mono/refine_pose.hpp"
+#include "engine/mono/search_model.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -46,25 +47,15 @@ void check_options(const TrackOptions& options) {
        "above 0, at most 1");
 }
 
-// A model's points as they are measured: the centre of a circle by that of its ellipse.
-std::vector<PosePoint> pose_points(const MonoModel& model) {
-  std::vector<PosePoint> points;
-  points.reserve(model.points.size());
-  for (const ModelFeature& feature : model.points) {
-    PosePoint point;
-    point.xyz = feature.xyz;
-    if (feature.type == FeatureType::kConicCentre) {
-      const double near_m = 1e-6 * std::max(model.diameter_m, 1e-3);
-      for (const ModelCircle& circle : model.circles) {
-        if ((circle.center - feature.xyz).norm() > near_m) continue;
-        point.radius_m = circle.radius_m;
-        point.normal = circle.normal;
-        break;
-      }
-    }
-    points.push_back(point);
+void check_start(const Eigen::Isometry3d& T_camera_object, const MonoModel& model) {
+  if (!T_camera_object.matrix().allFinite()) {
+    throw Error(ErrorCode::kInvalidArgument, "the start pose has a number that is not finite");
   }
-  return points;
+  const double depth_m = (T_camera_object * mean_point(model)).z();
+  if (depth_m > 0.0) return;
+  std::ostringstream text;
+  text << "the start pose has the object behind the camera (z " << depth_m << " m)";
+  throw Error(ErrorCode::kInvalidArgument, text.str(), "start_t_camera_object");
 }
 
 }  // namespace
@@ -95,17 +86,8 @@ struct Tracker::Fit {
 };
 
 std::string_view to_string(TrackStatus status) {
-  switch (status) {
-    case TrackStatus::kTracked:
-      return "tracked";
-    case TrackStatus::kRecognized:
-      return "recognized";
-    case TrackStatus::kPredicted:
-      return "predicted";
-    case TrackStatus::kLost:
-      break;
-  }
-  return "lost";
+  constexpr std::string_view kNames[] = {"tracked", "recognized", "predicted", "lost"};
+  return kNames[static_cast<std::size_t>(status)];
 }
 
 Tracker::Tracker(std::shared_ptr<const MonoModelRecord> record,
@@ -125,9 +107,7 @@ Tracker::Tracker(std::shared_ptr<const MonoModelRecord> record,
 }
 
 void Tracker::start_from(const Eigen::Isometry3d& T_camera_object) {
-  if (!T_camera_object.matrix().allFinite()) {
-    throw Error(ErrorCode::kInvalidArgument, "the start pose has a number that is not finite");
-  }
+  check_start(T_camera_object, record_->model);
   pose_ = RigidPose{T_camera_object.linear(), T_camera_object.translation()};
   motion_ = still();
   missed_ = 0;

@@ -74,7 +74,8 @@ class Tracker {
           const TrackOptions& options,
           const Recognizer* recognizer);
 
-  // Where the object is in the frame before the next one.
+  // Where the object is in the frame before the next one. Throws Error{kInvalidArgument} for what
+  // is not finite or has the object behind the camera.
   void start_from(const Eigen::Isometry3d& T_camera_object);
 
   // Throws Error{kInvalidArgument} for an image whose size is not the camera's, or a coordinate

@@ -80,7 +80,7 @@ TEST(ReadModel, NamesWhatIsWrong) {
            {"{\"points\": 3}", "\"points\" is a number"},
            {R"({"points": [[0,0],[1,0,0],[0,1,0]]})", "point 0 is 2 numbers"},
            {R"({"points": [[0,0,"x"],[1,0,0],[0,1,0]]})", "point 0 has a string"},
-           {R"({"points": [[0,0,1e300],[1,0,0],[0,1,0]]})", "point 0 has the coordinate"},
+           {R"({"points": [[0,0,1e300],[1,0,0],[0,1,0]]})", "point 0 has the coordinate 1e+300 m"},
            {R"({"points": [{"xyz": [0,0,0], "type": "corner"}]})", "type \"corner\""},
            {R"({"points": [{"type": "vertex"}]})", "point 0 has no \"xyz\""},
            {R"({"points": [{"xyz": [0,0,0], "normal": [0,0,0]}]})", "point 0's normal"},

@@ -17,6 +17,7 @@
 #include "engine/mono/read_image.hpp"
 #include "engine/mono/read_model.hpp"
 #include "engine/mono/recognizer.hpp"
+#include "engine/mono/search_model.hpp"
 #include "engine/mono/tracker.hpp"
 
 namespace landmarkdb {
@@ -85,9 +86,7 @@ TEST(TrackerSequences, TheRenderedCastleIsFoundFromNothingAndFollowedThroughAllI
   EXPECT_LT(*std::max_element(off_rad.begin(), off_rad.end()), 0.4 * kDegree);
 }
 
-TEST(TrackerSequences, TheCubeInTheVideoIsFollowedThroughAllItsFrames) {
-  const fs::path folder = kData / "mbt";
-  if (!fs::exists(folder / "cube")) GTEST_SKIP() << "visp-images-data is not installed";
+Camera cube_camera() {
   Camera camera;
   camera.width = 640;
   camera.height = 480;
@@ -95,11 +94,24 @@ TEST(TrackerSequences, TheCubeInTheVideoIsFollowedThroughAllItsFrames) {
   camera.fy = 542.0744058;
   camera.cx = 338.7036994;
   camera.cy = 234.5083345;
-  Tracker tracker(record_of(folder / "cube.cao"), camera, {}, nullptr);
+  return camera;
+}
+
+// The pose of the first frame that comes with the video.
+Eigen::Isometry3d cube_start() {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = rotation_from_vector({2.100485509, 1.146812236, -0.4560126437});
   T.translation() << 0.02231950571, 0.1071368004, 0.5071128378;
-  tracker.start_from(T);
+  return T;
+}
+
+RigidPose rigid(const Eigen::Isometry3d& T) { return {T.linear(), T.translation()}; }
+
+TEST(TrackerSequences, TheCubeInTheVideoIsFollowedThroughAllItsFrames) {
+  const fs::path folder = kData / "mbt";
+  if (!fs::exists(folder / "cube")) GTEST_SKIP() << "visp-images-data is not installed";
+  Tracker tracker(record_of(folder / "cube.cao"), cube_camera(), {}, nullptr);
+  tracker.start_from(cube_start());
   std::vector<double> shares;
   for (int frame = 0; frame <= 200; ++frame) {
     const TrackResult result =
@@ -110,6 +122,42 @@ TEST(TrackerSequences, TheCubeInTheVideoIsFollowedThroughAllItsFrames) {
   // There is no truth; a cube beside its place would not lie on three quarters of its edges.
   EXPECT_GT(*std::min_element(shares.begin(), shares.end()), 0.7);
   EXPECT_GT(median(shares), 0.85);
+}
+
+// The same track whether its start was given or recognised: here and, as a camera may be switched
+// on at any moment, from the middle of the video.
+TEST(TrackerSequences, TheCubeInTheVideoIsFoundFromNothing) {
+  constexpr int kFramesToFindIt = 5;
+  const fs::path folder = kData / "mbt";
+  if (!fs::exists(folder / "cube")) GTEST_SKIP() << "visp-images-data is not installed";
+  const auto record = record_of(folder / "cube.cao");
+  const SearchModel model = prepare_model(record);
+  auto catalog = std::make_shared<MonoCatalog>();
+  catalog->entries.push_back({.model_id = 1, .record = record});
+  const Recognizer recognizer(catalog);
+  Tracker given(record, cube_camera(), {}, nullptr);
+  given.start_from(cube_start());
+  for (const int first : {0, 100}) {
+    Tracker tracker(record, cube_camera(), {}, &recognizer);
+    Tracker reference = given;
+    int found = -1;
+    for (int frame = 0; frame <= 200; ++frame) {
+      const GreyImage image = read_image(folder / "cube" / numbered("image%04d.pgm", frame));
+      const Eigen::Isometry3d T_given = *reference.next(image, {}).T_camera_object;
+      if (frame < first) continue;
+      const TrackResult result = tracker.next(image, {});
+      if (found < 0 && result.status == TrackStatus::kRecognized) found = frame;
+      if (found < 0) continue;
+      ASSERT_EQ(result.status, frame == found ? TrackStatus::kRecognized : TrackStatus::kTracked)
+          << "frame " << frame << ": " << result.reason;
+      // A track that was just found is still being drawn in.
+      EXPECT_TRUE(same_but_for_symmetry(
+          model, rigid(T_given), rigid(*result.T_camera_object), 2.0 * kDegree, 0.004))
+          << "frame " << frame;
+    }
+    ASSERT_GE(found, first);
+    EXPECT_LE(found, first + kFramesToFindIt);
+  }
 }
 
 }  // namespace

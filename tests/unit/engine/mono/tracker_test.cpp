@@ -179,6 +179,9 @@ TEST(Tracker, RefusesWhatDoesNotFit) {
   Eigen::Isometry3d bad = box_at(0);
   bad.translation().x() = std::numeric_limits<double>::infinity();
   EXPECT_THROW(tracker.start_from(bad), Error);
+  bad = box_at(0);
+  bad.translation().z() = -0.5;
+  EXPECT_THROW(tracker.start_from(bad), Error);
   EXPECT_EQ(tracker.next(ImageFeatures{}, {}).status, TrackStatus::kLost);
 }
 
