@@ -110,4 +110,8 @@ std::string count_text(std::uint64_t count) {
   return text;
 }
 
+std::string counted(std::size_t count, const std::string& noun) {
+  return count_text(count) + ' ' + noun + (count == 1 ? "" : "s");
+}
+
 }  // namespace landmarkdb::cli

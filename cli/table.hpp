@@ -42,5 +42,7 @@ std::string bytes_text(std::uint64_t bytes);
 
 // "2,798,245"
 std::string count_text(std::uint64_t count);
+// "1 point", "1,200 points"
+std::string counted(std::size_t count, const std::string& noun);
 
 }  // namespace landmarkdb::cli

@@ -63,10 +63,9 @@ struct Client::State {
 
   ModelInfo call_for_model(v1::Envelope request, const RunContext& context) {
     const v1::Envelope reply = call(std::move(request), v1::Envelope::kModelReply, context);
-    ModelInfo model = from_proto(reply.model_reply().model());
-    model.json = reply.model_reply().json();
-    model.replaced = reply.model_reply().replaced();
-    return model;
+    return {from_proto(reply.model_reply().model()),
+            reply.model_reply().json(),
+            reply.model_reply().replaced()};
   }
 
   Connection connection;
@@ -128,12 +127,12 @@ void Client::close_track(std::uint32_t track, const RunContext& context) {
   state_->call(std::move(request), v1::Envelope::kTrackCloseReply, context);
 }
 
-std::vector<ModelInfo> Client::models(const RunContext& context) {
+std::vector<ModelSummary> Client::models(const RunContext& context) {
   v1::Envelope request;
   request.mutable_model_list();
   const v1::Envelope reply =
       state_->call(std::move(request), v1::Envelope::kModelListReply, context);
-  std::vector<ModelInfo> out;
+  std::vector<ModelSummary> out;
   for (const v1::ModelInfo& model : reply.model_list_reply().models()) {
     out.push_back(from_proto(model));
   }

@@ -51,7 +51,7 @@ class Client {
   TrackedFrame track(std::uint32_t track, const TrackInput& input, const RunContext& context);
   void close_track(std::uint32_t track, const RunContext& context);
 
-  std::vector<ModelInfo> models(const RunContext& context);  // by name
+  std::vector<ModelSummary> models(const RunContext& context);  // by name
   ModelInfo model(const std::string& name, const RunContext& context);
   ModelInfo add_model(const ModelAdd& add, const RunContext& context);
   void remove_model(const std::string& name, const RunContext& context);

@@ -132,6 +132,7 @@ RecognizeAnswer from_proto(const v1::RecognizeResult& message) {
     result.hypotheses.push_back(from_proto(hypothesis));
   }
   result.image_points = message.image_points();
+  result.seed = message.seed();
   result.warnings.assign(message.warnings().begin(), message.warnings().end());
   const v1::RecognizeTimings& t = message.timing();
   using Duration = StageTimings::Duration;
@@ -144,15 +145,16 @@ RecognizeAnswer from_proto(const v1::RecognizeResult& message) {
   return answer;
 }
 
-ModelInfo from_proto(const v1::ModelInfo& message) {
-  ModelInfo model;
+ModelSummary from_proto(const v1::ModelInfo& message) {
+  ModelSummary model;
+  model.id = message.model_id();
   model.name = message.name();
-  model.model_id = message.model_id();
   model.created = message.created();
   model.source = message.source();
   model.unit_scale = message.unit_scale();
   model.points_of_type = {
       message.vertices(), message.conic_centres(), message.centroids(), message.inflexions()};
+  for (const std::size_t count : model.points_of_type) model.points += count;
   model.edges = message.edges();
   model.faces = message.faces();
   model.circles = message.circles();
@@ -162,7 +164,7 @@ ModelInfo from_proto(const v1::ModelInfo& message) {
   model.diameter_m = message.diameter_m();
   model.warnings.assign(message.warnings().begin(), message.warnings().end());
   model.sha256 = message.sha256();
-  model.quarantined = message.quarantined();
+  if (!message.quarantined().empty()) model.damage = message.quarantined();
   return model;
 }
 

@@ -13,6 +13,6 @@ v1::ModelAddRequest to_proto(const ModelAdd& add);
 
 // Throw Error{kInternal} where the server's answer is not what the protocol promises.
 RecognizeAnswer from_proto(const v1::RecognizeResult& result);
-ModelInfo from_proto(const v1::ModelInfo& model);
+ModelSummary from_proto(const v1::ModelInfo& model);
 
 }  // namespace landmarkdb::client

@@ -7,10 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/help.hpp"
+#include "cli/model_view.hpp"
+#include "cli/table.hpp"
 #include "client/choices.hpp"
-#include "client/program.hpp"
 #include "client/render_recognition.hpp"
-#include "client/session.hpp"
+#include "client/request_command.hpp"
 #include "engine/cloud/input.hpp"
 
 namespace landmarkdb::client {
@@ -20,34 +21,26 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kMaxModelBytes = std::uint64_t{64} << 20U;
 
-// A command whose whole work is one request that answers with the model as it is now.
+// A request that answers with the model as it is now.
 template <typename Request>
-void model_action(CLI::App& command, Program& program, Request request) {
-  command.callback([request = std::move(request), &program] {
-    program.action = [request, &program] {
-      Session session(program.options);
-      const ModelInfo model = request(session);
-      session.finish();
-      Json json = model_json(model);
-      if (model.replaced) json["replaced"] = true;
-      program.print(json, model_text(model));
-      return 0;
-    };
+void on_model_request(CLI::App& command, Program& program, Request request) {
+  on_request(command, program, std::move(request), [&program](const ModelInfo& model) {
+    Json json = model_json(model);
+    if (model.replaced) json["replaced"] = true;
+    program.print(json, cli::model_text(model.summary));
   });
 }
 
 void add_list(CLI::App& parent, Program& program) {
   CLI::App* command =
       cli::add_command(parent, "list", "List the models", {{"landmarkdb model list", ""}});
-  command->callback([&program] {
-    program.action = [&program] {
-      Session session(program.options);
-      const std::vector<ModelInfo> models = session.connect().models(session.context());
-      session.finish();
-      program.print(models_json(models), models_text(models));
-      return 0;
-    };
-  });
+  on_request(
+      *command,
+      program,
+      [](Session& session) { return session.connect().models(session.context()); },
+      [&program](const std::vector<ModelSummary>& models) {
+        program.print(models_json(models), cli::models_text(models));
+      });
 }
 
 void add_show(CLI::App& parent, Program& program) {
@@ -56,9 +49,8 @@ void add_show(CLI::App& parent, Program& program) {
       "show",
       "Show one model; with --json its points, edges, faces, circles and symmetries too",
       {{"landmarkdb model show box --json", ""}});
-  const auto name = std::make_shared<std::string>();
-  command->add_option("NAME", *name, "Name of the model")->required();
-  model_action(*command, program, [name](Session& session) {
+  const auto name = add_name(*command, "model");
+  on_model_request(*command, program, [name](Session& session) {
     return session.connect().model(*name, session.context());
   });
 }
@@ -79,7 +71,7 @@ void add_add(CLI::App& parent, Program& program) {
       ->required();
   command->add_option("--units", a->units, "Unit of the file's lengths [its own, else m]")
       ->check(CLI::IsMember(kUnitNames));
-  model_action(*command, program, [a](Session& session) {
+  on_model_request(*command, program, [a](Session& session) {
     const FileBytes file = read_whole_file(a->file, kMaxModelBytes);
     const ModelAdd add{a->name,
                        std::string(reinterpret_cast<const char*>(file.data.get()), file.size),
@@ -92,27 +84,26 @@ void add_add(CLI::App& parent, Program& program) {
 void add_remove(CLI::App& parent, Program& program) {
   CLI::App* command =
       cli::add_command(parent, "remove", "Remove a model", {{"landmarkdb model remove box", ""}});
-  const auto name = std::make_shared<std::string>();
-  command->add_option("NAME", *name, "Name of the model")->required();
-  command->callback([name, &program] {
-    program.action = [name, &program] {
-      Session session(program.options);
-      session.connect().remove_model(*name, session.context());
-      session.finish();
-      program.print(Json{{"removed", *name}}, "removed model " + *name + "\n");
-      return 0;
-    };
-  });
+  const auto name = add_name(*command, "model");
+  on_request(
+      *command,
+      program,
+      [name](Session& session) {
+        session.connect().remove_model(*name, session.context());
+        return *name;
+      },
+      [&program](const std::string& removed) {
+        program.print(Json{{"removed", removed}},
+                      "removed model " + cli::printable(removed) + "\n");
+      });
 }
 
 void add_rename(CLI::App& parent, Program& program) {
   CLI::App* command = cli::add_command(
       parent, "rename", "Rename a model", {{"landmarkdb model rename box parcel", ""}});
-  const auto names = std::make_shared<std::pair<std::string, std::string>>();
-  command->add_option("OLD", names->first, "Name of the model")->required();
-  command->add_option("NEW", names->second, "Its new name")->required();
-  model_action(*command, program, [names](Session& session) {
-    return session.connect().rename_model(names->first, names->second, session.context());
+  const auto names = add_renaming(*command, "model");
+  on_model_request(*command, program, [names](Session& session) {
+    return session.connect().rename_model(names->from, names->to, session.context());
   });
 }
 

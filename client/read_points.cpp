@@ -6,6 +6,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/cloud/input.hpp"
+#include "engine/types/feature_names.hpp"
 
 namespace landmarkdb::client {
 namespace {
@@ -14,8 +15,6 @@ using Json = nlohmann::json;
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{32} << 20U;
 constexpr std::size_t kMaxPoints = 100'000;  // the server's limit
-constexpr std::array<std::string_view, kFeatureTypes> kTypeNames{
-    "vertex", "conic_centre", "centroid", "inflexion"};
 
 class PointsReader {
  public:
@@ -65,12 +64,11 @@ class PointsReader {
   }
 
   FeatureType type_of(const Json& json, const std::string& what) const {
-    for (std::size_t i = 0; i < kFeatureTypes; ++i) {
-      if (json.is_string() && json.get<std::string>() == kTypeNames[i]) {
-        return static_cast<FeatureType>(i);
-      }
+    if (json.is_string()) {
+      if (const auto type = feature_type_from_name(json.get<std::string>())) return *type;
     }
-    refuse(what + " has the type " + in_quotes(json.dump()) +
+    refuse(what + " has the type " +
+           (json.is_string() ? in_quotes(json.get<std::string>()) : json.dump()) +
            ", want vertex, conic_centre, centroid or inflexion");
   }
 

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "engine/geometry/camera.hpp"
+#include "engine/types/model_summary.hpp"
 #include "engine/types/mono_model.hpp"
 #include "engine/types/recognition.hpp"
 
@@ -35,23 +36,11 @@ struct RecognizeAnswer {
   std::string overlay_png{};  // where asked for
 };
 
-// A model as the server lists it.
+// A model as the server knows it.
 struct ModelInfo {
-  std::string name;
-  std::int64_t model_id = 0;
-  std::string created;
-  std::string source;
-  double unit_scale = 1.0;
-  std::array<std::size_t, kFeatureTypes> points_of_type{};
-  std::size_t edges = 0, faces = 0, circles = 0, triples = 0;
-  std::string symmetry;
-  std::size_t symmetries = 0;
-  double diameter_m = 0.0;
-  std::vector<std::string> warnings;
-  std::string sha256;
-  std::string quarantined;  // why it is not served; empty: it is
-  std::string json;         // only of Client::model(): the model as a model file
-  bool replaced = false;    // only of Client::add_model()
+  ModelSummary summary;
+  std::string json{};     // only of Client::model(): the model as a model file
+  bool replaced = false;  // only of Client::add_model()
 };
 
 // A model file to be stored.

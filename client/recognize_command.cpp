@@ -1,5 +1,6 @@
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/Option.hpp>
@@ -12,6 +13,7 @@
 #include "cli/write_file.hpp"
 #include "client/program.hpp"
 #include "client/read_points.hpp"
+#include "client/recognize_options.hpp"
 #include "client/render_recognition.hpp"
 #include "client/session.hpp"
 #include "engine/base/error.hpp"
@@ -30,10 +32,7 @@ struct RecognizeArguments {
   std::string camera;
   std::vector<std::string> models;
   std::uint32_t top = 3;
-  double min_confidence = 0.5;
-  std::string min_depth;
-  std::string max_depth;
-  std::uint64_t seed = 1;
+  RecognizeLimits limits;
   std::string overlay;
 };
 
@@ -71,21 +70,30 @@ RecognizeOptions options_of(const RecognizeArguments& a) {
   RecognizeOptions options;
   options.models = a.models;
   options.top = a.top;
-  options.min_confidence = a.min_confidence;
-  if (!a.min_depth.empty()) options.min_depth_m = cli::parse_positive(a.min_depth, "--min-depth");
-  if (!a.max_depth.empty()) options.max_depth_m = cli::parse_positive(a.max_depth, "--max-depth");
-  if (options.min_depth_m >= options.max_depth_m) {
-    throw cli::UsageError("--max-depth", "want more than --min-depth");
-  }
-  options.seed = a.seed;
+  apply(a.limits, options);
   return options;
+}
+
+// What the server says of "image" is said of the file.
+RecognizeAnswer ask(Session& session,
+                    const RecognizeInput& input,
+                    const RecognizeOptions& options,
+                    const std::string& path) {
+  constexpr std::string_view kPrefix = "image: ";
+  try {
+    return session.connect().recognize(input, options, session.context());
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    if (error.field() != "image" || !what.starts_with(kPrefix)) throw;
+    throw Error(error.code(), path + ": " + what.substr(kPrefix.size()), error.field());
+  }
 }
 
 int run_recognize(const RecognizeArguments& arguments, const Program& program) {
   const RecognizeOptions options = options_of(arguments);
   const RecognizeInput input = load_input(arguments);
   Session session(program.options);
-  const RecognizeAnswer answer = session.connect().recognize(input, options, session.context());
+  const RecognizeAnswer answer = ask(session, input, options, arguments.image);
   session.finish();
   if (!arguments.overlay.empty()) {
     cli::write_file(arguments.overlay, answer.overlay_png, "--overlay");
@@ -115,17 +123,7 @@ void add_recognize_command(CLI::App& app, Program& program) {
       ->type_name("K")
       ->check(CLI::Range(std::uint32_t{1}, kMostHypotheses))
       ->capture_default_str();
-  command->add_option("--min-confidence", a->min_confidence, "Below this nothing is recognized")
-      ->type_name("C")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->add_option("--min-depth", a->min_depth, "Nearest the object may be, in metres [0.05]")
-      ->type_name("M");
-  command->add_option("--max-depth", a->max_depth, "Furthest the object may be, in metres [20]")
-      ->type_name("M");
-  command->add_option("--seed", a->seed, "Same image and seed: same answer")
-      ->type_name("N")
-      ->capture_default_str();
+  add_recognize_limits(*command, a->limits);
   command->add_option("--overlay", a->overlay, "Write the image with the answer drawn on it (PNG)")
       ->type_name("FILE");
   command->callback(

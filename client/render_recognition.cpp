@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "cli/model_view.hpp"
 #include "cli/table.hpp"
 #include "engine/geometry/pose.hpp"
 
@@ -94,12 +95,6 @@ std::string hypothesis_text(const MonoHypothesis& h) {
   return text;
 }
 
-std::size_t points_of(const ModelInfo& model) {
-  std::size_t count = 0;
-  for (const std::size_t of_type : model.points_of_type) count += of_type;
-  return count;
-}
-
 }  // namespace
 
 Json recognition_json(const RecognizeResult& result) {
@@ -112,6 +107,7 @@ Json recognition_json(const RecognizeResult& result) {
     out["hypotheses"].push_back(hypothesis_json(hypothesis, result.image_points));
   }
   out["image_points"] = result.image_points;
+  out["seed"] = result.seed;
   out["warnings"] = result.warnings;
   const RecognizeTimings& t = result.timings;
   out["timing_ms"] = {{"features", t.features.count()},
@@ -152,83 +148,15 @@ int recognize_exit_status(const RecognizeResult& result) {
 }
 
 Json model_json(const ModelInfo& model) {
-  Json types = {{"vertex", model.points_of_type[0]},
-                {"conic_centre", model.points_of_type[1]},
-                {"centroid", model.points_of_type[2]},
-                {"inflexion", model.points_of_type[3]}};
-  Json out = {{"name", model.name},
-              {"model_id", model.model_id},
-              {"state", model.quarantined.empty() ? "active" : "quarantined"},
-              {"created", model.created},
-              {"source", model.source},
-              {"unit_scale", model.unit_scale},
-              {"points", points_of(model)},
-              {"points_of_type", std::move(types)},
-              {"edges", model.edges},
-              {"faces", model.faces},
-              {"circles", model.circles},
-              {"triples", model.triples},
-              {"symmetry", model.symmetry},
-              {"symmetries", model.symmetries},
-              {"diameter_m", model.diameter_m},
-              {"warnings", model.warnings},
-              {"sha256", model.sha256}};
-  if (!model.quarantined.empty()) out["state_reason"] = model.quarantined;
+  Json out = cli::model_json(model.summary);
   if (!model.json.empty()) out["model"] = Json::parse(model.json, nullptr, false);
   return out;
 }
 
-Json models_json(const std::vector<ModelInfo>& models) {
+Json models_json(const std::vector<ModelSummary>& models) {
   Json array = Json::array();
-  for (const ModelInfo& model : models) array.push_back(model_json(model));
+  for (const ModelSummary& model : models) array.push_back(cli::model_json(model));
   return {{"models", std::move(array)}};
-}
-
-std::string model_text(const ModelInfo& model) {
-  std::string text = cli::printable(model.name) +
-                     formatted(": %zu points, %zu edges, %zu faces, %zu circles, %zu triples, ",
-                               points_of(model),
-                               model.edges,
-                               model.faces,
-                               model.circles,
-                               model.triples) +
-                     "symmetry " + cli::printable(model.symmetry) +
-                     formatted(", %.4g m across\n", model.diameter_m);
-  text +=
-      "from " + cli::printable(model.source) + ", stored " + cli::printable(model.created) + "\n";
-  if (!model.quarantined.empty()) {
-    text += "damaged, not served: " + cli::printable(model.quarantined) + "\n";
-  }
-  for (const std::string& warning : model.warnings) {
-    text += "note: " + cli::printable(warning) + "\n";
-  }
-  return text;
-}
-
-std::string models_text(const std::vector<ModelInfo>& models) {
-  using cli::Align;
-  if (models.empty()) return "no models\n";
-  cli::Table table({{"NAME"},
-                    {"POINTS", Align::kRight},
-                    {"EDGES", Align::kRight},
-                    {"FACES", Align::kRight},
-                    {"CIRCLES", Align::kRight},
-                    {"SYMMETRY"},
-                    {"ACROSS (m)", Align::kRight},
-                    {"CREATED"},
-                    {"STATE"}});
-  for (const ModelInfo& model : models) {
-    table.add({model.name,
-               cli::count_text(points_of(model)),
-               cli::count_text(model.edges),
-               cli::count_text(model.faces),
-               cli::count_text(model.circles),
-               model.symmetry,
-               formatted("%.4g", model.diameter_m),
-               model.created,
-               model.quarantined.empty() ? "active" : "damaged"});
-  }
-  return table.text();
 }
 
 }  // namespace landmarkdb::client

@@ -21,10 +21,8 @@ std::string recognition_text(const RecognizeResult& result);
 // hypothesis says ambiguous, or its margin over the next is nothing); 3 not found.
 int recognize_exit_status(const RecognizeResult& result);
 
-// Models for scripts (the indexer prints the same keys) and for people.
-nlohmann::ordered_json model_json(const ModelInfo& model);  // with the model where it has it
-nlohmann::ordered_json models_json(const std::vector<ModelInfo>& models);  // {"models": [...]}
-std::string model_text(const ModelInfo& model);
-std::string models_text(const std::vector<ModelInfo>& models);
+// Models for scripts, as the indexer prints them; the first with the model itself where it has it.
+nlohmann::ordered_json model_json(const ModelInfo& model);
+nlohmann::ordered_json models_json(const std::vector<ModelSummary>& models);  // {"models": [...]}
 
 }  // namespace landmarkdb::client

@@ -1,49 +1,42 @@
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include <CLI/Option.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cli/help.hpp"
+#include "cli/table.hpp"
 #include "cli/usage_error.hpp"
 #include "cli/values.hpp"
-#include "client/program.hpp"
 #include "client/render_scenes.hpp"
+#include "client/request_command.hpp"
 #include "client/scene_add.hpp"
-#include "client/session.hpp"
 
 namespace landmarkdb::client {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A command whose whole work is one request that answers with the scene as it is now.
+// A request that answers with the scene as it is now.
 template <typename Request>
-void scene_action(CLI::App& command, Program& program, Request request) {
-  command.callback([request = std::move(request), &program] {
-    program.action = [request, &program] {
-      Session session(program.options);
-      const SceneInfo scene = request(session);
-      session.finish();
-      program.print(scene_json(scene), scene_text(scene));
-      return 0;
-    };
+void on_scene_request(CLI::App& command, Program& program, Request request) {
+  on_request(command, program, std::move(request), [&program](const SceneInfo& scene) {
+    program.print(scene_json(scene), scene_text(scene));
   });
 }
 
 void add_list(CLI::App& parent, Program& program) {
   CLI::App* command = cli::add_command(
       parent, "list", "List the scenes that are served", {{"landmarkdb scene list", ""}});
-  command->callback([&program] {
-    program.action = [&program] {
-      Session session(program.options);
-      const std::vector<SceneInfo> scenes = session.connect().scenes(session.context());
-      session.finish();
-      program.print(scenes_json(scenes), scenes_text(scenes));
-      return 0;
-    };
-  });
+  on_request(
+      *command,
+      program,
+      [](Session& session) { return session.connect().scenes(session.context()); },
+      [&program](const std::vector<SceneInfo>& scenes) {
+        program.print(scenes_json(scenes), scenes_text(scenes));
+      });
 }
 
 void add_show(CLI::App& parent, Program& program) {
@@ -51,9 +44,8 @@ void add_show(CLI::App& parent, Program& program) {
                                        "show",
                                        "Show one scene, its versions and landmarks",
                                        {{"landmarkdb scene show lobby", ""}});
-  const auto name = std::make_shared<std::string>();
-  command->add_option("NAME", *name, "Name of the scene")->required();
-  scene_action(*command, program, [name](Session& session) {
+  const auto name = add_name(*command, "scene");
+  on_scene_request(*command, program, [name](Session& session) {
     return session.connect().scene(*name, session.context());
   });
 }
@@ -67,7 +59,7 @@ void add_add(CLI::App& parent, Program& program) {
        {"landmarkdb scene add yard a.pcd b.pcd --pose a.txt --pose b.txt", "two, with poses"}});
   const auto arguments = std::make_shared<SceneAddArguments>();
   add_scene_add_options(*command, *arguments);
-  scene_action(*command, program, [arguments](Session& session) {
+  on_scene_request(*command, program, [arguments](Session& session) {
     const SceneAdd add = load_scene(*arguments);
     return session.connect().add_scene(add, session.context());
   });
@@ -78,27 +70,25 @@ void add_remove(CLI::App& parent, Program& program) {
                                        "remove",
                                        "Remove a scene with all its versions",
                                        {{"landmarkdb scene remove lobby", ""}});
-  const auto name = std::make_shared<std::string>();
-  command->add_option("NAME", *name, "Name of the scene")->required();
-  command->callback([name, &program] {
-    program.action = [name, &program] {
-      Session session(program.options);
-      session.connect().remove_scene(*name, session.context());
-      session.finish();
-      program.print(Json{{"removed", *name}}, "removed " + *name + "\n");
-      return 0;
-    };
-  });
+  const auto name = add_name(*command, "scene");
+  on_request(
+      *command,
+      program,
+      [name](Session& session) {
+        session.connect().remove_scene(*name, session.context());
+        return *name;
+      },
+      [&program](const std::string& removed) {
+        program.print(Json{{"removed", removed}}, "removed " + cli::printable(removed) + "\n");
+      });
 }
 
 void add_rename(CLI::App& parent, Program& program) {
   CLI::App* command = cli::add_command(
       parent, "rename", "Rename a scene", {{"landmarkdb scene rename lobby entrance", ""}});
-  const auto names = std::make_shared<std::pair<std::string, std::string>>();
-  command->add_option("OLD", names->first, "Name of the scene")->required();
-  command->add_option("NEW", names->second, "Its new name")->required();
-  scene_action(*command, program, [names](Session& session) {
-    return session.connect().rename_scene(names->first, names->second, session.context());
+  const auto names = add_renaming(*command, "scene");
+  on_scene_request(*command, program, [names](Session& session) {
+    return session.connect().rename_scene(names->from, names->to, session.context());
   });
 }
 
@@ -107,9 +97,8 @@ void add_rollback(CLI::App& parent, Program& program) {
                                        "rollback",
                                        "Serve the version before the active one again",
                                        {{"landmarkdb scene rollback lobby", ""}});
-  const auto name = std::make_shared<std::string>();
-  command->add_option("NAME", *name, "Name of the scene")->required();
-  scene_action(*command, program, [name](Session& session) {
+  const auto name = add_name(*command, "scene");
+  on_scene_request(*command, program, [name](Session& session) {
     return session.connect().rollback_scene(*name, session.context());
   });
 }
@@ -136,7 +125,7 @@ void add_tag(CLI::App& parent, Program& program) {
   const auto words = std::make_shared<std::vector<std::string>>();
   command->add_option("NAME", *name, "Name of the scene")->required();
   command->add_option("KEY=VALUE", *words, "Tags")->required();
-  scene_action(*command, program, [name, words](Session& session) {
+  on_scene_request(*command, program, [name, words](Session& session) {
     const std::map<std::string, std::string> tags = parse_tags(*words);
     return session.connect().tag_scene(*name, tags, session.context());
   });
@@ -159,7 +148,7 @@ void add_landmark_commands(CLI::App& parent, Program& program) {
   add->add_option("--box", *box, "Its box in the scene frame, metres")
       ->type_name("xmin,ymin,zmin,xmax,ymax,zmax")
       ->required();
-  scene_action(*add, program, [scene, landmark, box](Session& session) {
+  on_scene_request(*add, program, [scene, landmark, box](Session& session) {
     const cli::Box bounds = cli::parse_box(*box, "--box");
     return session.connect().add_landmark(
         *scene,
@@ -170,7 +159,7 @@ void add_landmark_commands(CLI::App& parent, Program& program) {
   CLI::App* remove = cli::add_command(*group, "remove", "Take a landmark's name away", {});
   remove->add_option("SCENE", *scene, "Name of the scene")->required();
   remove->add_option("LANDMARK", *landmark, "Name of the landmark")->required();
-  scene_action(*remove, program, [scene, landmark](Session& session) {
+  on_scene_request(*remove, program, [scene, landmark](Session& session) {
     return session.connect().remove_landmark(*scene, *landmark, session.context());
   });
 }

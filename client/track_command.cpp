@@ -16,6 +16,7 @@
 #include "cli/values.hpp"
 #include "client/frame_source.hpp"
 #include "client/program.hpp"
+#include "client/recognize_options.hpp"
 #include "client/render_track.hpp"
 #include "client/session.hpp"
 #include "engine/base/error.hpp"
@@ -34,10 +35,7 @@ struct TrackArguments {
   std::string model;
   std::string servo;
   std::string start;
-  double min_confidence = 0.5;
-  std::string min_depth;
-  std::string max_depth;
-  std::uint64_t seed = 1;
+  RecognizeLimits limits;
 };
 
 const std::vector<cli::Example> kExamples = {
@@ -61,13 +59,7 @@ std::string read_arm(const std::string& path) {
 TrackSetup setup_of(const TrackArguments& a) {
   TrackSetup setup;
   RecognizeOptions& options = setup.recognize;
-  options.min_confidence = a.min_confidence;
-  if (!a.min_depth.empty()) options.min_depth_m = cli::parse_positive(a.min_depth, "--min-depth");
-  if (!a.max_depth.empty()) options.max_depth_m = cli::parse_positive(a.max_depth, "--max-depth");
-  if (options.min_depth_m >= options.max_depth_m) {
-    throw cli::UsageError("--max-depth", "want more than --min-depth");
-  }
-  options.seed = a.seed;
+  apply(a.limits, options);
   if (!a.start.empty()) setup.start = cli::read_pose(a.start);
   setup.camera = read_camera(a.camera);
   setup.model = a.model;
@@ -129,7 +121,10 @@ class Run {
       return track_json(frames.name(), answer);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::kInvalidArgument) throw;
-      if (first_problem_.empty()) first_problem_ = frames.name() + ": " + error.what();
+      const std::string what = error.what();
+      if (first_problem_.empty()) {
+        first_problem_ = what.starts_with(frames.name()) ? what : frames.name() + ": " + what;
+      }
       return unusable_frame_json(frames.name(), error.what());
     }
   }
@@ -173,17 +168,7 @@ void add_track_command(CLI::App& app, Program& program) {
       ->add_option(
           "--start", a->start, "T_camera_object before the first frame, file or 16 numbers")
       ->type_name("T16");
-  command->add_option("--min-confidence", a->min_confidence, "Below this nothing is recognized")
-      ->type_name("C")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->add_option("--min-depth", a->min_depth, "Nearest the object may be, in metres [0.05]")
-      ->type_name("M");
-  command->add_option("--max-depth", a->max_depth, "Furthest the object may be, in metres [20]")
-      ->type_name("M");
-  command->add_option("--seed", a->seed, "Same frames and seed: same answers")
-      ->type_name("N")
-      ->capture_default_str();
+  add_recognize_limits(*command, a->limits);
   command->callback(
       [a, &program] { program.action = [a, &program] { return Run(*a, program)(); }; });
 }

@@ -51,7 +51,8 @@ KeypointMethod parse_keypoints(const std::string& name) {
 void require_one_each(const std::string& option, std::size_t given, std::size_t clouds) {
   if (given == 0 || given == clouds) return;
   throw cli::UsageError(option,
-                        "given " + counted(given, "time") + " for " + counted(clouds, "cloud") +
+                        "given " + cli::counted(given, "time") + " for " +
+                            cli::counted(clouds, "cloud") +
                             "; want none, or one for each cloud in their order");
 }
 

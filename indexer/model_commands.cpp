@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/help.hpp"
+#include "cli/model_view.hpp"
 #include "cli/table.hpp"
 #include "indexer/add_model.hpp"
 #include "indexer/checked_names.hpp"
@@ -41,11 +42,12 @@ int run_add(const ModelArguments& arguments, const Program& program) {
   const AddModelResult added = add_model(request, db, job.context());
   job.finish_progress();
   for (const std::string& warning : added.summary.warnings) program.note("note: " + warning);
-  ordered_json object = model_json(added.summary);
+  ordered_json object = cli::model_json(added.summary);
   object["replaced"] = added.stored.replaced;
   program.print(object,
                 (added.stored.replaced ? "replaced model " : "added model ") +
-                    cli::printable(arguments.name) + ": " + model_figures(added.summary) + "\n");
+                    cli::printable(arguments.name) + ": " + cli::model_figures(added.summary) +
+                    "\n");
   return 0;
 }
 
@@ -69,9 +71,9 @@ int run_list(const ModelArguments&, const Program& program) {
   const Store store = Store::open_read_only(program.database());
   const std::vector<ModelSummary> models = store.list_models();
   ordered_json array = ordered_json::array();
-  for (const ModelSummary& model : models) array.push_back(model_json(model));
+  for (const ModelSummary& model : models) array.push_back(cli::model_json(model));
   program.print({{"models", std::move(array)}, {"generation", store.generation()}},
-                models_text(models));
+                cli::models_text(models));
   return 0;
 }
 

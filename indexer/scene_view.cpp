@@ -198,8 +198,4 @@ std::string scene_text(const SceneSummary& scene) {
   return text;
 }
 
-std::string counted(std::size_t count, const std::string& noun) {
-  return cli::count_text(count) + ' ' + noun + (count == 1 ? "" : "s");
-}
-
 }  // namespace landmarkdb::indexer

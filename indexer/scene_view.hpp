@@ -24,7 +24,4 @@ std::string scenes_text(const std::vector<SceneSummary>& scenes);
 std::string scene_text(const SceneSummary& scene);
 std::string landmarks_text(const std::vector<Landmark>& landmarks);
 
-// "1 scene", "2 scenes"
-std::string counted(std::size_t count, const std::string& noun);
-
 }  // namespace landmarkdb::indexer

@@ -35,11 +35,11 @@ int run_check(const Program& program) {
   const CheckReport report = Store::open_read_only(program.database()).check(job.context());
   job.finish_progress();
   const std::string read =
-      "read " + counted(report.scenes, "scene") + ", " + counted(report.versions, "version") +
-      ", " + counted(report.arrays, "array") + ", " + counted(report.models, "model") + ", " +
-      cli::bytes_text(report.bytes) + ": ";
+      "read " + cli::counted(report.scenes, "scene") + ", " +
+      cli::counted(report.versions, "version") + ", " + cli::counted(report.arrays, "array") +
+      ", " + cli::counted(report.models, "model") + ", " + cli::bytes_text(report.bytes) + ": ";
   const std::string verdict =
-      report.ok() ? "all sound\n" : counted(report.findings.size(), "finding") + "\n";
+      report.ok() ? "all sound\n" : cli::counted(report.findings.size(), "finding") + "\n";
   program.print({{"ok", report.ok()},
                  {"findings", report.findings},
                  {"scenes", report.scenes},

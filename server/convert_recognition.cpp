@@ -185,6 +185,7 @@ v1::RecognizeResult to_proto(const RecognizeResult& result) {
     *message.add_hypotheses() = to_proto(hypothesis);
   }
   message.set_image_points(result.image_points);
+  message.set_seed(result.seed);
   for (const std::string& warning : result.warnings) message.add_warnings(warning);
   v1::RecognizeTimings& timing = *message.mutable_timing();
   timing.set_features_ms(result.timings.features.count());

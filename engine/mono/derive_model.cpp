@@ -10,11 +10,11 @@
 
 #include <Eigen/Geometry>
 
-#include "engine/mono/feature_names.hpp"
 #include "engine/mono/model_faces.hpp"
 #include "engine/mono/model_symmetry.hpp"
 #include "engine/mono/orient_faces.hpp"
 #include "engine/mono/visibility.hpp"
+#include "engine/types/feature_names.hpp"
 
 namespace landmarkdb {
 namespace {

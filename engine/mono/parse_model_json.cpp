@@ -7,8 +7,8 @@
 
 #include "engine/base/error.hpp"
 #include "engine/geometry/pose.hpp"
-#include "engine/mono/feature_names.hpp"
 #include "engine/mono/model_draft.hpp"
+#include "engine/types/feature_names.hpp"
 
 namespace landmarkdb {
 namespace {

@@ -196,6 +196,7 @@ RecognizeResult Recognizer::Impl::recognize(const ImageFeatures& features,
   check_request(features, camera, options);
   const std::vector<char> wanted_models = wanted(options);
   result.image_points = features.points.size();
+  result.seed = options.seed;
   run.check("lookup");
   const double scale = scale_of(features);
   const ImageView image(features, camera, kReach_px * scale);

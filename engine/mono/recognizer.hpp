@@ -14,7 +14,8 @@ namespace landmarkdb {
 // Finds the models of a catalogue in one image: the whole of `recognize`.
 //
 // Built once a catalogue (the quad index over all views of all models); const methods are
-// thread-safe, and the same input and seed give the same answer.
+// thread-safe, and the same input gives the same answer: no choice is left to chance, and so none
+// to the seed.
 class Recognizer {
  public:
   // On `context.threads` threads. Models whose index (MonoModelRecord) is missing or of another

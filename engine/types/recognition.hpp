@@ -45,7 +45,7 @@ struct RecognizeOptions {
   double min_confidence = 0.5;
   double min_depth_m = 0.05;  // of the object's origin, along the optical axis
   double max_depth_m = 20.0;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;  // given back in the result; nothing is drawn at random
 };
 
 // Wall time of each stage; the names are those of the answer's `timing_ms`.
@@ -60,6 +60,7 @@ struct RecognizeResult {
   std::string reason{};                      // only for kNotFound: which stage had nothing left
   std::vector<MonoHypothesis> hypotheses{};  // best first, at most `top`
   std::size_t image_points = 0;
+  std::uint64_t seed = 1;
   std::vector<std::string> warnings{};
   RecognizeTimings timings{};
 };

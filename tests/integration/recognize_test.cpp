@@ -8,9 +8,9 @@
 #include "datasets/mono/render_model.hpp"
 #include "engine/geometry/camera.hpp"
 #include "engine/geometry/pose.hpp"
-#include "engine/mono/feature_names.hpp"
 #include "engine/mono/read_model.hpp"
 #include "engine/mono/visibility.hpp"
+#include "engine/types/feature_names.hpp"
 #include "tests/integration/site.hpp"
 
 namespace landmarkdb::testing {
@@ -157,11 +157,28 @@ TEST_F(Recognition, BadInputIsToldAndHarmsNothing) {
   const std::string black = write("black.pgm", "P5\n640 480\n255\n" + std::string(640 * 480, '\0'));
   EXPECT_EQ(server.client({"recognize", black, "--camera", camera_file}).status, 3);
   const std::string vast = write("vast.pgm", "P5\n12000 9000\n255\n");
-  EXPECT_EQ(server.client({"recognize", vast, "--camera", camera_file}).status, 7);
+  const Outcome promised = server.client({"recognize", vast, "--camera", camera_file});
+  EXPECT_EQ(promised.status, 7);
+  EXPECT_THAT(promised.err, HasSubstr("vast.pgm: "));
+  const std::string wide =
+      write("wide.json",
+            R"({"width": 12000, "height": 9000, "fx": 600, "fy": 600, "cx": 6000, "cy": 4500})");
+  const Outcome over = server.client({"recognize", vast, "--camera", wide});
+  EXPECT_EQ(over.status, 7);  // asked again it would be no other
+  EXPECT_THAT(over.err, HasSubstr("the server takes at most"));
   const std::string few = write("few.json", R"({"points": [{"uv": [1, 2]}]})");
   EXPECT_EQ(server.client({"recognize", "--points", few, "--camera", camera_file}).status, 3);
   const std::string none = write("none.json", R"({"points": []})");
   EXPECT_EQ(server.client({"recognize", "--points", none, "--camera", camera_file}).status, 3);
+  const std::string line = write("line.json", R"({"points": [
+      {"uv": [50, 240]}, {"uv": [150, 240]}, {"uv": [250, 240]}, {"uv": [350, 240]},
+      {"uv": [450, 240]}, {"uv": [50, 240]}, {"uv": [50, 240]}]})");
+  EXPECT_EQ(server.client({"recognize", "--points", line, "--camera", camera_file}).status, 3);
+  const std::string outside = write("outside.json", R"({"points": [
+      {"uv": [-9e5, 0]}, {"uv": [9e5, 7]}, {"uv": [0, -8e5]}, {"uv": [1, 8e5]}, {"uv": [1, 1]}]})");
+  const Outcome far = server.client({"recognize", "--points", outside, "--camera", camera_file});
+  EXPECT_EQ(far.status, 3);
+  EXPECT_THAT(far.out, HasSubstr("outside_lens_model"));
   for (const char* text : {"{",
                            "{}",
                            R"({"points": [{"uv": [1]}]})",

@@ -13,7 +13,7 @@
 
 #include "datasets/mono/render_model.hpp"
 #include "engine/geometry/pose.hpp"
-#include "engine/mono/feature_names.hpp"
+#include "engine/types/feature_names.hpp"
 #include "tests/integration/site.hpp"
 #include "tests/support/moving_box.hpp"
 

@@ -65,5 +65,11 @@ TEST(CountText, GroupsDigitsByThree) {
   EXPECT_EQ(count_text(2798245), "2,798,245");
 }
 
+TEST(Counted, KnowsThePlural) {
+  EXPECT_EQ(counted(1, "scene"), "1 scene");
+  EXPECT_EQ(counted(0, "scene"), "0 scenes");
+  EXPECT_EQ(counted(1234, "scene"), "1,234 scenes");
+}
+
 }  // namespace
 }  // namespace landmarkdb::cli

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/model_view.hpp"
+
 namespace landmarkdb::client {
 namespace {
 
@@ -53,6 +55,7 @@ TEST(RenderRecognition, HasTheDocumentedKeysInTheirOrder) {
   EXPECT_NEAR(json["hypotheses"][0]["euler_zyx_deg"][0].get<double>(), 28.6479, 1e-3);
   EXPECT_NEAR(json["hypotheses"][0]["euler_zyx_deg"][2].get<double>(), 0.0, 1e-9);
   EXPECT_EQ(json["hypotheses"][0]["matched"], 2);
+  EXPECT_EQ(json["seed"], 1);
   EXPECT_EQ(json["hypotheses"][0]["T_camera_object"][11], 0.6);
 }
 
@@ -86,18 +89,20 @@ TEST(RenderRecognition, TextHasThePoseAndTheFigures) {
 
 TEST(RenderRecognition, ModelsAreListed) {
   ModelInfo model;
-  model.name = "box";
-  model.points_of_type = {8, 2, 6, 0};
-  model.symmetry = "none";
+  model.summary.name = "box";
+  model.summary.points = 16;
+  model.summary.points_of_type = {8, 2, 6, 0};
+  model.summary.symmetry = "none";
   model.json = R"({"name":"box"})";
   EXPECT_EQ(model_json(model)["points"], 16);
   EXPECT_EQ(model_json(model)["state"], "active");
   EXPECT_EQ(model_json(model)["model"]["name"], "box");
-  EXPECT_THAT(models_text({model}), HasSubstr("box"));
-  EXPECT_EQ(models_text({}), "no models\n");
-  model.quarantined = "its triples are damaged";
+  EXPECT_EQ(models_json({model.summary})["models"][0]["points_of_type"]["centroid"], 6);
+  EXPECT_THAT(cli::models_text({model.summary}), HasSubstr("box"));
+  EXPECT_EQ(cli::models_text({}), "no models\n");
+  model.summary.damage = "its triples are damaged";
   EXPECT_EQ(model_json(model)["state"], "quarantined");
-  EXPECT_THAT(model_text(model), HasSubstr("damaged, not served"));
+  EXPECT_THAT(cli::model_text(model.summary), HasSubstr("damaged, not served"));
 }
 
 }  // namespace

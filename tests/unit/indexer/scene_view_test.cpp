@@ -71,11 +71,5 @@ TEST(SceneText, ShowsVersionsAndLandmarks) {
   EXPECT_THAT(text, HasSubstr("vents"));
 }
 
-TEST(Counted, KnowsThePlural) {
-  EXPECT_EQ(counted(1, "scene"), "1 scene");
-  EXPECT_EQ(counted(0, "scene"), "0 scenes");
-  EXPECT_EQ(counted(1234, "scene"), "1,234 scenes");
-}
-
 }  // namespace
 }  // namespace landmarkdb::indexer

@@ -122,6 +122,7 @@ TEST(ConvertRecognition, AnAnswerArrivesAsItWasGiven) {
   RecognizeResult result;
   result.status = RecognizeStatus::kRecognized;
   result.image_points = 12;
+  result.seed = 77;
   result.warnings = {"search_cut_short"};
   MonoHypothesis hypothesis;
   hypothesis.model = "box";
@@ -135,6 +136,7 @@ TEST(ConvertRecognition, AnAnswerArrivesAsItWasGiven) {
   const RecognizeResult seen = client::from_proto(to_proto(result)).result;
   EXPECT_EQ(seen.status, RecognizeStatus::kRecognized);
   EXPECT_EQ(seen.image_points, 12U);
+  EXPECT_EQ(seen.seed, 77U);
   EXPECT_THAT(seen.warnings, ElementsAre("search_cut_short"));
   ASSERT_THAT(seen.hypotheses, SizeIs(1));
   EXPECT_EQ(seen.hypotheses[0].T_camera_object.matrix(), hypothesis.T_camera_object.matrix());

@@ -13,18 +13,8 @@
 namespace landmarkdb {
 namespace {
 
+using testing::bent_camera;
 using testing::box_record;
-
-Camera camera() {
-  Camera c;
-  c.width = 640;
-  c.height = 480;
-  c.fx = c.fy = 600.0;
-  c.cx = 319.5;
-  c.cy = 239.5;
-  c.dist[0] = -0.25;
-  return c;
-}
 
 RigidPose truth() { return {rotation_from_vector({0.9, 0.5, 0.2}), {0.01, -0.02, 0.6}}; }
 
@@ -39,7 +29,7 @@ EdgeCandidates candidates_for(const std::vector<TrackSample>& samples,
                               Random& random) {
   EdgeCandidates result;
   for (const TrackSample& sample : samples) {
-    const Eigen::Vector2d uv = *project(camera(), truth() * sample.xyz);
+    const Eigen::Vector2d uv = *project(bent_camera(), truth() * sample.xyz);
     const auto offset = static_cast<float>((uv - sample.uv).dot(sample.normal));
     if (random.uniform() < wrong) {
       result.list.push_back(
@@ -60,9 +50,9 @@ Alignment align_twice(double wrong) {
   result.pose = start();
   for (int round = 0; round < 3; ++round) {
     const std::vector<TrackSample> samples = track_samples(
-        box_record()->model, ModelVisibility(box_record()->model), camera(), result.pose, {});
-    result =
-        align_model(samples, candidates_for(samples, wrong, random), {}, camera(), result.pose, {});
+        box_record()->model, ModelVisibility(box_record()->model), bent_camera(), result.pose, {});
+    result = align_model(
+        samples, candidates_for(samples, wrong, random), {}, bent_camera(), result.pose, {});
   }
   return result;
 }
@@ -83,25 +73,26 @@ TEST(AlignModel, FindsThePoseFromPointsAlone) {
   std::vector<PosePoint> points;
   for (const ModelFeature& feature : box_record()->model.points) {
     if (feature.type != FeatureType::kVertex) continue;
-    points.push_back({.xyz = feature.xyz, .uv = *project(camera(), truth() * feature.xyz)});
+    points.push_back({.xyz = feature.xyz, .uv = *project(bent_camera(), truth() * feature.xyz)});
   }
-  const Alignment result = align_model({}, {}, points, camera(), start(), {});
+  const Alignment result = align_model({}, {}, points, bent_camera(), start(), {});
   EXPECT_TRUE(result.fixed);
   EXPECT_THAT(result.pose.isometry(), testing::PoseNear(truth().isometry(), 1e-6, 1e-6));
 }
 
 TEST(AlignModel, SaysWhenTooLittleFixesThePose) {
-  const Alignment nothing = align_model({}, {}, {}, camera(), start(), {});
+  const Alignment nothing = align_model({}, {}, {}, bent_camera(), start(), {});
   EXPECT_FALSE(nothing.fixed);
   EXPECT_EQ(nothing.pose.t, start().t);
   // One edge leaves four freedoms.
   std::vector<TrackSample> samples = track_samples(
-      box_record()->model, ModelVisibility(box_record()->model), camera(), start(), {});
+      box_record()->model, ModelVisibility(box_record()->model), bent_camera(), start(), {});
   std::erase_if(samples, [&](const TrackSample& s) { return s.curve != samples.front().curve; });
   ASSERT_GE(samples.size(), 6U);
   Random random(1);
   EXPECT_FALSE(
-      align_model(samples, candidates_for(samples, 0.0, random), {}, camera(), start(), {}).fixed);
+      align_model(samples, candidates_for(samples, 0.0, random), {}, bent_camera(), start(), {})
+          .fixed);
 }
 
 }  // namespace

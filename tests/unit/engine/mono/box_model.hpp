@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "engine/geometry/camera.hpp"
 #include "engine/mono/model_triples.hpp"
 #include "engine/mono/read_model.hpp"
 #include "engine/types/mono_model.hpp"
@@ -25,6 +26,18 @@ inline std::shared_ptr<const MonoModelRecord> box_record() {
     return made;
   }();
   return record;
+}
+
+// 640 x 480, f 600 px, with a barrel distortion.
+inline Camera bent_camera() {
+  Camera c;
+  c.width = 640;
+  c.height = 480;
+  c.fx = c.fy = 600.0;
+  c.cx = 319.5;
+  c.cy = 239.5;
+  c.dist[0] = -0.25;
+  return c;
 }
 
 }  // namespace landmarkdb::testing

@@ -11,25 +11,15 @@
 namespace landmarkdb {
 namespace {
 
+using testing::bent_camera;
 using testing::box_record;
-
-Camera camera() {
-  Camera c;
-  c.width = 640;
-  c.height = 480;
-  c.fx = c.fy = 600.0;
-  c.cx = 319.5;
-  c.cy = 239.5;
-  c.dist[0] = -0.25;
-  return c;
-}
 
 RigidPose pose() { return {rotation_from_vector({0.9, 0.5, 0.2}), {0.0, 0.0, 0.6}}; }
 
 std::vector<TrackSample> samples_of(const MonoModel& model,
                                     const RigidPose& at,
                                     const TrackSampleOptions& options = {}) {
-  return track_samples(model, ModelVisibility(model), camera(), at, options);
+  return track_samples(model, ModelVisibility(model), bent_camera(), at, options);
 }
 
 TEST(TrackSamples, LieWhereTheirPlacesAreSeenAndPointAcrossTheirEdge) {
@@ -37,11 +27,11 @@ TEST(TrackSamples, LieWhereTheirPlacesAreSeenAndPointAcrossTheirEdge) {
   const std::vector<TrackSample> samples = samples_of(model, pose());
   ASSERT_GT(samples.size(), 50U);
   for (const TrackSample& sample : samples) {
-    EXPECT_LT((*project(camera(), pose() * sample.xyz) - sample.uv).norm(), 1e-9);
+    EXPECT_LT((*project(bent_camera(), pose() * sample.xyz) - sample.uv).norm(), 1e-9);
     EXPECT_NEAR(sample.normal.norm(), 1.0, 1e-12);
     const auto& [from, to] = model.edges[sample.curve];
     const Eigen::Vector3d along = (model.points[to].xyz - model.points[from].xyz).normalized();
-    const Eigen::Vector2d beside = *project(camera(), pose() * (sample.xyz + 1e-6 * along));
+    const Eigen::Vector2d beside = *project(bent_camera(), pose() * (sample.xyz + 1e-6 * along));
     EXPECT_NEAR((beside - sample.uv).normalized().dot(sample.normal), 0.0, 1e-3);
   }
 }
