@@ -42,6 +42,25 @@ Eigen::Vector3d area_centroid(const MonoModel& model, std::span<const std::uint3
   return area > 0.0 ? Eigen::Vector3d(middle + weighted / area) : middle;
 }
 
+Eigen::Matrix3d area_spread(const MonoModel& model, std::span<const std::uint32_t> face) {
+  const Eigen::Vector3d middle = mean_corner(model, face);
+  const Eigen::Vector3d normal = area_vector(model, face).normalized();
+  const Eigen::Vector3d off = area_centroid(model, face) - middle;
+  Eigen::Matrix3d weighted = Eigen::Matrix3d::Zero();
+  double area = 0.0;
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    // The triangle of the middle and a side.
+    const Eigen::Vector3d a = model.points[face[i]].xyz - middle;
+    const Eigen::Vector3d b = model.points[face[(i + 1) % face.size()]].xyz - middle;
+    const double part = a.cross(b).dot(normal);
+    weighted +=
+        part / 12.0 * (a * a.transpose() + b * b.transpose() + (a + b) * (a + b).transpose());
+    area += part;
+  }
+  if (!(area > 0.0)) return Eigen::Matrix3d::Zero();
+  return weighted / area - off * off.transpose();
+}
+
 double out_of_plane_m(const MonoModel& model, std::span<const std::uint32_t> face) {
   const Eigen::Vector3d middle = mean_corner(model, face);
   const Eigen::Vector3d normal = area_vector(model, face).normalized();

@@ -16,6 +16,10 @@ Eigen::Vector3d area_vector(const MonoModel& model, std::span<const std::uint32_
 // The centre of gravity of a polygon's area.
 Eigen::Vector3d area_centroid(const MonoModel& model, std::span<const std::uint32_t> face);
 
+// The second moments of a polygon's area about its centre of gravity, divided by the area; zero
+// where it has none. m2.
+Eigen::Matrix3d area_spread(const MonoModel& model, std::span<const std::uint32_t> face);
+
 // How far the furthest corner lies from the plane through the corners' mean, metres.
 double out_of_plane_m(const MonoModel& model, std::span<const std::uint32_t> face);
 

@@ -68,7 +68,8 @@ bool same_pose(const RigidPose& a, const RigidPose& b) {
 
 bool finite(const PosePoint& point) {
   return point.xyz.allFinite() && point.uv.allFinite() && point.sigma_px > 0.0 &&
-         std::isfinite(point.sigma_px) && std::isfinite(point.radius_m) && point.normal.allFinite();
+         std::isfinite(point.sigma_px) && std::isfinite(point.radius_m) &&
+         point.normal.allFinite() && point.longer.allFinite();
 }
 
 }  // namespace

@@ -26,28 +26,34 @@ bool slope_of_point(const Eigen::Vector3d& rho, const Eigen::Vector3d& X, RaySlo
 
 // The centre of the ellipse that a circle is seen as. The cone of its tangent planes l has
 // (l . C)^2 = r^2 (|l|^2 - (l . N)^2), so its dual conic is C C^T - r^2 (I - N N^T), and the centre
-// is that matrix' last column.
-bool slope_of_circle(const Eigen::Vector3d& rho,
-                     const Eigen::Vector3d& C,
-                     const Eigen::Vector3d& N,
-                     double radius_m,
-                     RaySlope& s) {
+// is that matrix' last column. An ellipse has E E^T, E its PosePoint::longer, taken off as well.
+bool slope_of_area(const Eigen::Vector3d& rho,
+                   const Eigen::Vector3d& C,
+                   const Eigen::Vector3d& N,
+                   const Eigen::Vector3d& E,
+                   double radius_m,
+                   RaySlope& s) {
   const double rr = radius_m * radius_m;
-  const double below = C.z() * C.z() - rr * (1.0 - N.z() * N.z());
+  const double below = C.z() * C.z() - rr * (1.0 - N.z() * N.z()) - E.z() * E.z();
   if (!(C.z() > 0.0) || !(below > 0.0)) return false;
-  s.x = (C.x() * C.z() + rr * N.x() * N.z()) / below;
-  s.y = (C.y() * C.z() + rr * N.y() * N.z()) / below;
-  // Columns: w1 w2 w3 t1 t2 t3. A turn w moves rho by w x rho and N by w x N.
+  s.x = (C.x() * C.z() + rr * N.x() * N.z() - E.x() * E.z()) / below;
+  s.y = (C.y() * C.z() + rr * N.y() * N.z() - E.y() * E.z()) / below;
+  // Columns: w1 w2 w3 t1 t2 t3. A turn w moves rho by w x rho, N by w x N and E by w x E.
   const std::array<double, 6> c1{0.0, rho.z(), -rho.y(), 1.0, 0.0, 0.0};
   const std::array<double, 6> c2{-rho.z(), 0.0, rho.x(), 0.0, 1.0, 0.0};
   const std::array<double, 6> c3{rho.y(), -rho.x(), 0.0, 0.0, 0.0, 1.0};
   const std::array<double, 6> n1{0.0, N.z(), -N.y(), 0.0, 0.0, 0.0};
   const std::array<double, 6> n2{-N.z(), 0.0, N.x(), 0.0, 0.0, 0.0};
   const std::array<double, 6> n3{N.y(), -N.x(), 0.0, 0.0, 0.0, 0.0};
+  const std::array<double, 6> e1{0.0, E.z(), -E.y(), 0.0, 0.0, 0.0};
+  const std::array<double, 6> e2{-E.z(), 0.0, E.x(), 0.0, 0.0, 0.0};
+  const std::array<double, 6> e3{E.y(), -E.x(), 0.0, 0.0, 0.0, 0.0};
   for (std::size_t k = 0; k < 6; ++k) {
-    const double db = 2.0 * C.z() * c3[k] + 2.0 * rr * N.z() * n3[k];
-    const double dx = c1[k] * C.z() + C.x() * c3[k] + rr * (n1[k] * N.z() + N.x() * n3[k]);
-    const double dy = c2[k] * C.z() + C.y() * c3[k] + rr * (n2[k] * N.z() + N.y() * n3[k]);
+    const double db = 2.0 * (C.z() * c3[k] + rr * N.z() * n3[k] - E.z() * e3[k]);
+    const double dx = c1[k] * C.z() + C.x() * c3[k] + rr * (n1[k] * N.z() + N.x() * n3[k]) -
+                      (e1[k] * E.z() + E.x() * e3[k]);
+    const double dy = c2[k] * C.z() + C.y() * c3[k] + rr * (n2[k] * N.z() + N.y() * n3[k]) -
+                      (e2[k] * E.z() + E.y() * e3[k]);
     s.dx[k] = (dx - s.x * db) / below;
     s.dy[k] = (dy - s.y * db) / below;
   }
@@ -125,10 +131,13 @@ bool add_points(std::span<const PosePoint> points,
   RaySlope s;
   for (const PosePoint& point : points) {
     const Eigen::Vector3d rho = pose.R * point.xyz;
-    const bool seen =
-        point.radius_m > 0.0
-            ? slope_of_circle(rho, rho + pose.t, pose.R * point.normal, point.radius_m, s)
-            : slope_of_point(rho, rho + pose.t, s);
+    const bool seen = point.radius_m > 0.0 ? slope_of_area(rho,
+                                                           rho + pose.t,
+                                                           pose.R * point.normal,
+                                                           pose.R * point.longer,
+                                                           point.radius_m,
+                                                           s)
+                                           : slope_of_point(rho, rho + pose.t, s);
     if (!seen || !to_pixels(camera, bent, s)) return false;
     const double ru = s.x - point.uv.x(), rv = s.y - point.uv.y();
     const double scale = 1.0 / (point.sigma_px * point.sigma_px);
@@ -167,9 +176,13 @@ SeenRay seen_ray(const PosePoint& point, const RigidPose& pose) {
   const double rr = point.radius_m * point.radius_m;
   const Eigen::Vector3d N =
       rr > 0.0 ? Eigen::Vector3d(pose.R * point.normal) : Eigen::Vector3d::UnitZ();
-  const double below = C.z() * C.z() - rr * (1.0 - N.z() * N.z());
+  const Eigen::Vector3d E =
+      rr > 0.0 ? Eigen::Vector3d(pose.R * point.longer) : Eigen::Vector3d::Zero();
+  const double below = C.z() * C.z() - rr * (1.0 - N.z() * N.z()) - E.z() * E.z();
   seen.ok = C.z() > 0.0 && below > 0.0;
-  if (seen.ok) seen.ray = (C.head<2>() * C.z() + rr * N.z() * N.head<2>()) / below;
+  if (seen.ok) {
+    seen.ray = (C.head<2>() * C.z() + rr * N.z() * N.head<2>() - E.z() * E.head<2>()) / below;
+  }
   return seen;
 }
 

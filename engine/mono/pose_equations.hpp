@@ -15,9 +15,12 @@ struct PosePoint {
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();  // metres, object frame
   Eigen::Vector2d uv = Eigen::Vector2d::Zero();
   // The centre of a circle of this radius: `uv` is the centre of the ellipse it is seen as, which
-  // is not where the circle's centre is seen. 0: a plain point.
+  // is not where the circle's centre is seen. 0: a plain point. The centroid of a face is that of
+  // an ellipse with the face's second moments: `radius_m` is the shorter half axis, and the squares
+  // of `radius_m` and of `longer`, which points along the other, add up to that of the longer.
   double radius_m = 0.0;
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // of that circle
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // of that circle or face
+  Eigen::Vector3d longer = Eigen::Vector3d::Zero();   // of a circle nothing
   double sigma_px = 1.0;                              // a residual counts in units of it
 };
 
@@ -59,7 +62,8 @@ bool add_edges(std::span<const PoseEdge> edges,
                double huber,
                PoseEquations& equations);
 
-// Where a PosePoint should be seen from a pose: for a circle the centre of its ellipse. In rays
+// Where a PosePoint should be seen from a pose: for a circle the centre of its ellipse, for a face
+// the centre of gravity of its image (to the third order of size over distance). In rays
 // (x, y at z = 1). `ok` false behind the camera.
 struct SeenRay {
   Eigen::Vector2d ray;

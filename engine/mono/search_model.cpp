@@ -5,7 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
+
 #include "engine/geometry/pose.hpp"
+#include "engine/mono/model_faces.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -73,6 +76,23 @@ class ViewTable {
 
 }  // namespace
 
+namespace {
+
+// Makes `point` the centroid of a face.
+void spread_over_face(const MonoModel& model,
+                      std::span<const std::uint32_t> face,
+                      PosePoint& point) {
+  // Ascending: across the plane, the shorter axis, the longer. A disc of radius r has r^2 / 4.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(4.0 * area_spread(model, face));
+  const Eigen::Vector3d squares = axes.eigenvalues().cwiseMax(0.0);
+  if (!(squares[1] > 0.0)) return;
+  point.radius_m = std::sqrt(squares[1]);
+  point.normal = axes.eigenvectors().col(0);
+  point.longer = std::sqrt(squares[2] - squares[1]) * axes.eigenvectors().col(2);
+}
+
+}  // namespace
+
 std::vector<PosePoint> pose_points(const MonoModel& model) {
   std::vector<PosePoint> points;
   for (const ModelFeature& feature : model.points) {
@@ -82,6 +102,9 @@ std::vector<PosePoint> pose_points(const MonoModel& model) {
       const ModelCircle& circle = model.circles[static_cast<std::size_t>(feature.part)];
       point.radius_m = circle.radius_m;
       point.normal = circle.normal.normalized();
+    }
+    if (feature.type == FeatureType::kCentroid && feature.part >= 0) {
+      spread_over_face(model, model.faces[static_cast<std::size_t>(feature.part)], point);
     }
     points.push_back(point);
   }

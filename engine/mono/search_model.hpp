@@ -34,7 +34,8 @@ struct SearchModel {
   bool linked(std::uint32_t a, std::uint32_t b) const { return joined[a * points.size() + b] != 0; }
 };
 
-// A model's points as they are measured: the centre of a circle by that of its ellipse.
+// A model's points as they are measured: the centre of a circle by that of its ellipse, the
+// centroid of a face by the centre of gravity of its image.
 std::vector<PosePoint> pose_points(const MonoModel& model);
 
 // From the record's own index where it has one that fits, and else from a new one.

@@ -1,14 +1,18 @@
 #include "engine/mono/point_pose.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
 
 #include "engine/base/random.hpp"
 #include "engine/geometry/pose.hpp"
+#include "engine/mono/model_faces.hpp"
+#include "engine/mono/search_model.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -217,6 +221,80 @@ TEST(SolvePoints, IsExactOnCentresOfEllipses) {
   for (PosePoint& point : points) point.radius_m = 0.0;
   const PointPoses biased = solve_points(points, bent_camera(), {});
   EXPECT_GT(apart_rad(biased.poses[0].pose, truth), 1e-3) << "the bias would be nothing to correct";
+}
+
+// A plate of 0.16 x 0.08 m with a corner cut out, and the centre of gravity of its image.
+MonoModel plate() {
+  MonoModel model;
+  for (const auto& [x, y] : {std::pair{-0.08, -0.04},
+                             {0.08, -0.04},
+                             {0.08, 0.0},
+                             {0.02, 0.0},
+                             {0.02, 0.04},
+                             {-0.08, 0.04}}) {
+    model.points.push_back({FeatureType::kVertex, {x, y, 0.02}});
+  }
+  model.faces = {{0, 1, 2, 3, 4, 5}};
+  model.points.push_back({FeatureType::kCentroid, area_centroid(model, model.faces[0]), {}, 0});
+  model.diameter_m = 0.18;
+  return model;
+}
+
+Eigen::Vector2d image_centroid(const MonoModel& model, const RigidPose& pose) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double area = 0.0;
+  const std::vector<std::uint32_t>& face = model.faces[0];
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    const Eigen::Vector3d A = pose * model.points[face[i]].xyz;
+    const Eigen::Vector3d B = pose * model.points[face[(i + 1) % face.size()]].xyz;
+    const Eigen::Vector2d a = A.head<2>() / A.z(), b = B.head<2>() / B.z();
+    const double part = a.x() * b.y() - a.y() * b.x();
+    sum += part * (a + b) / 3.0;
+    area += part;
+  }
+  return sum / area;
+}
+
+TEST(SeenRay, OfAFaceIsTheCentreOfGravityOfItsImage) {
+  const MonoModel model = plate();
+  const PosePoint centroid = pose_points(model).back();
+  PosePoint plain;
+  plain.xyz = centroid.xyz;
+  Random random(3);
+  double worst_px = 0.0, worst_plain_px = 0.0;
+  for (int trial = 0; trial < 500; ++trial) {
+    const Eigen::Vector3d turn(
+        random.uniform(-0.9, 0.9), random.uniform(-0.9, 0.9), random.uniform(-3.0, 3.0));
+    const RigidPose pose{rotation_from_vector(turn),
+                         {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0.6}};
+    if (pose.R(2, 2) < 0.5) continue;
+    const Eigen::Vector2d seen = image_centroid(model, pose);
+    const SeenRay ray = seen_ray(centroid, pose);
+    ASSERT_TRUE(ray.ok);
+    worst_px = std::max(worst_px, 600.0 * (ray.ray - seen).norm());
+    worst_plain_px = std::max(worst_plain_px, 600.0 * (seen_ray(plain, pose).ray - seen).norm());
+  }
+  EXPECT_GT(worst_plain_px, 3.0) << "there would be nothing to correct";
+  EXPECT_LT(worst_px, 0.5);
+}
+
+TEST(SolvePoints, IsExactOnCentroidsOfFaces) {
+  // Nine plates that are turned in their plane, as seen_ray has them: the slopes lead to the truth.
+  std::vector<PosePoint> points;
+  const RigidPose truth{rotation_from_vector({0.6, -0.3, 0.2}), Eigen::Vector3d(0.02, -0.03, 0.6)};
+  for (const double x : {-0.1, 0.0, 0.1}) {
+    for (const double y : {-0.1, 0.0, 0.1}) {
+      PosePoint point;
+      point.xyz = {x, y, 0.0};
+      point.radius_m = 0.02;
+      point.longer = 0.05 * Eigen::Vector3d(std::cos(7.0 * x + y), std::sin(7.0 * x + y), 0.0);
+      point.uv = distort(bent_camera(), seen_ray(point, truth).ray);
+      points.push_back(point);
+    }
+  }
+  const PointPoses found = solve_points(points, bent_camera(), {});
+  ASSERT_EQ(found.status, PoseStatus::kOk);
+  EXPECT_LT(apart_rad(found.poses[0].pose, truth), 1e-8);
 }
 
 TEST(SolvePoints, ResistsAnOutlierWithHuber) {
