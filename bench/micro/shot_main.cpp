@@ -150,6 +150,7 @@ void run_ours(benchmark::State& state) {
   RunContext context;
   context.threads = kThreads;
   DescriptorSet set;
+  cloud();  // not timed
   Fastest fastest;
   for (auto _ : state) {
     fastest.time(state, [&] {

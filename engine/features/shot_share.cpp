@@ -1,6 +1,7 @@
 #include "engine/features/shot_share.hpp"
 
 #include <cstring>
+#include <initializer_list>
 
 namespace landmarkdb {
 namespace {
@@ -25,12 +26,25 @@ namespace avx2 {
 #include "engine/features/shot_share_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
 }  // namespace avx2
 #pragma GCC pop_options
+
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,prefer-vector-width=512")
+namespace avx512 {
+#include "engine/features/shot_share_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
+}  // namespace avx512
+#pragma GCC pop_options
+
+bool has_avx512() {
+  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+}
 #endif
 
 }  // namespace
 
 ShotShare shot_share(const char* instruction_set) {
 #if defined(__x86_64__)
+  if (std::strcmp(instruction_set, "avx512") == 0) return has_avx512() ? &avx512::share : nullptr;
   if (std::strcmp(instruction_set, "avx2") == 0) {
     return __builtin_cpu_supports("avx2") != 0 ? &avx2::share : nullptr;
   }
@@ -39,8 +53,12 @@ ShotShare shot_share(const char* instruction_set) {
 }
 
 ShotShare shot_share() {
-  static const ShotShare best =
-      shot_share("avx2") != nullptr ? shot_share("avx2") : shot_share("sse2");
+  static const ShotShare best = [] {
+    for (const char* name : {"avx512", "avx2"}) {
+      if (const ShotShare share = shot_share(name)) return share;
+    }
+    return shot_share("sse2");
+  }();
   return best;
 }
 

@@ -9,7 +9,7 @@ inline constexpr std::int32_t kShotBins = 11;  // of the cosine
 
 // What shot_share reads and writes: plain arrays, each of `count` elements rounded up to a multiple
 // of kShotLanes (what lies past `count` may be any numbers, and its shares mean nothing).
-inline constexpr std::size_t kShotLanes = 8;
+inline constexpr std::size_t kShotLanes = 16;
 
 struct ShotPoints {
   const float *x, *y, *z;     // offsets from the keypoint, cloud axes
@@ -35,7 +35,7 @@ using ShotShare = void (*)(const ShotPoints& points,
                            ShotShares& shares);
 ShotShare shot_share();
 
-// That of one instruction set by name, "sse2" or "avx2"; null where the machine lacks it.
+// That of one instruction set by name, "sse2", "avx2" or "avx512"; null where the machine lacks it.
 ShotShare shot_share(const char* instruction_set);
 
 }  // namespace landmarkdb
