@@ -25,6 +25,7 @@ struct Settings {
   std::size_t scenes = 300, models = 100;
   std::uint64_t seed = 10000;
   std::string json_file;
+  bool cpu_time = false;
   std::string only;  // rows whose name has this in it
 };
 
@@ -64,6 +65,7 @@ RecognitionOptions options_of(const Case& one, const Settings& settings, std::ui
   options.scenes = settings.scenes;
   options.seed = seed;
   options.kind = one.kind;
+  options.cpu_time = settings.cpu_time;
   options.model.types = one.types;
   options.scene.features = one.features;
   options.scene.clutter_share = one.clutter;
@@ -196,6 +198,8 @@ int main(int argc, char** argv) {
   app.add_option("--models", settings.models, "models in the catalogue")->capture_default_str();
   app.add_option("--scenes", settings.scenes, "scenes a row")->capture_default_str();
   app.add_option("--only", settings.only, "rows of `recognition` whose name has this in it");
+  app.add_flag(
+      "--cpu-time", settings.cpu_time, "times of `recognition` are the thread's, not the clock's");
   app.add_option("--json", settings.json_file, "write the figures to FILE");
   app.add_subcommand("recognition", "right, accepted and wrong answers by what is in the image");
   app.add_subcommand("calibrate", "fit the weights of the confidence");

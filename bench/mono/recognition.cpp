@@ -1,7 +1,7 @@
 #include "bench/mono/recognition.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -22,6 +22,13 @@ std::shared_ptr<const MonoModelRecord> mirrored(const MonoModelRecord& record) {
   for (std::vector<std::uint32_t>& face : result->model.faces)
     std::reverse(face.begin(), face.end());
   return result;
+}
+
+// Of the clock, or of this thread's work: recognition runs on one.
+double time_ms(bool cpu) {
+  timespec now{};
+  clock_gettime(cpu ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
 // One recogniser a catalogue: building it takes a second.
@@ -93,14 +100,14 @@ std::vector<Outcome> run_recognition(const RecognitionOptions& options) {
       shown = nullptr;
     }
     const testing::MonoScene scene = testing::make_mono_scene(shown, of_scene);
-    const auto start = std::chrono::steady_clock::now();
+    const double start_ms = time_ms(options.cpu_time);
     const RecognizeResult result =
         recognizer.recognize(scene.features, scene.camera, RecognizeOptions{}, RunContext{});
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+    const double took_ms = time_ms(options.cpu_time) - start_ms;
     Outcome outcome =
         judge(result, scene, options.kind == SceneKind::kKnown ? &drawn : nullptr, of_scene.edges);
     outcome.kind = options.kind;
-    outcome.ms = took.count();
+    outcome.ms = took_ms;
     outcomes.push_back(outcome);
   }
   return outcomes;

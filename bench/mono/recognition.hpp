@@ -18,6 +18,7 @@ struct RecognitionOptions {
   std::size_t scenes = 300;
   std::uint64_t seed = 1;
   SceneKind kind = SceneKind::kKnown;
+  bool cpu_time = false;  // times are of the thread, not of the clock: for a busy machine
   testing::MonoModelOptions model{};
   testing::MonoSceneOptions scene{};
 };

@@ -24,6 +24,11 @@ class CandidatePool {
   // Looks at a pose and, where it passes and is new, settles and keeps it.
   void try_pose(std::uint32_t model, const RigidPose& pose);
 
+  // What try_pose would go by: see PoseCheck::count_near.
+  std::size_t count_near(std::uint32_t model, const RigidPose& pose) {
+    return check_.count_near(model, pose);
+  }
+
   // Each model may be settled as often again: for a search of another kind.
   void renew_allowance() { settled_.assign(models_.size(), 0); }
 

@@ -23,6 +23,14 @@ constexpr std::size_t kSearched = 3;        // links that the search itself has 
 constexpr double kLeastChanceOfArm = 0.25;  // edges of real scenes share their directions
 constexpr double kDirection_rad = 12.0 * std::numbers::pi / 180.0;
 
+constexpr std::size_t kGrowFrom = 7;  // points that agree before a pose is refined to find more
+
+// Matches that a pose of so many visible points has to show at first sight.
+std::size_t hits_needed(std::size_t visible) {
+  return std::max(kLeastHits,
+                  static_cast<std::size_t>(std::ceil(kLeastShare * static_cast<double>(visible))));
+}
+
 Eigen::Vector2d ideal(const ImageView& image, const Eigen::Vector3d& X) {
   return image.focal_px() * X.head<2>() / X.z();
 }
@@ -123,38 +131,43 @@ std::size_t PoseCheck::collect(std::uint32_t model,
   return matches_.size();
 }
 
-std::span<const Match> PoseCheck::look(std::uint32_t model, const RigidPose& pose) {
-  ++looks_;
+// The points of the view nearest to the pose; nullptr where the pose is out of the depth range.
+const std::vector<std::uint16_t>* PoseCheck::seen_at(std::uint32_t model,
+                                                     const RigidPose& pose) const {
   const SearchModel& search = models_[model];
   const double depth = (pose * search.center).z();
-  if (!(depth >= options_.min_depth_m) || !(depth <= options_.max_depth_m)) return {};
-  const Eigen::Vector3d sight = -(pose.R.transpose() * pose.t) - search.center;
-  const std::vector<std::uint16_t>& seen = search.seen[nearest_view(sight)];
-  const std::size_t need =
-      std::max(kLeastHits,
-               static_cast<std::size_t>(std::ceil(kLeastShare * static_cast<double>(seen.size()))));
-  if (seen.size() < need || collect(model, pose, seen, kLook_px * options_.scale, need) < need)
+  if (!(depth >= options_.min_depth_m) || !(depth <= options_.max_depth_m)) return nullptr;
+  return &search.seen[nearest_view(-(pose.R.transpose() * pose.t) - search.center)];
+}
+
+std::size_t PoseCheck::count_near(std::uint32_t model, const RigidPose& pose) {
+  const std::vector<std::uint16_t>* seen = seen_at(model, pose);
+  if (seen == nullptr) return 0;
+  const std::size_t need = std::min(kGrowFrom, hits_needed(seen->size()));
+  const std::size_t hits = collect(model, pose, *seen, kLook_px * options_.scale, need);
+  return hits < need ? 0 : hits;
+}
+
+std::span<const Match> PoseCheck::look(std::uint32_t model, const RigidPose& pose) {
+  ++looks_;
+  const std::vector<std::uint16_t>* seen = seen_at(model, pose);
+  if (seen == nullptr) return {};
+  const std::size_t need = hits_needed(seen->size());
+  if (seen->size() < need || collect(model, pose, *seen, kLook_px * options_.scale, need) < need)
     return {};
   return matches_;
 }
 
 std::span<const Match> PoseCheck::grow(std::uint32_t model, RigidPose& pose) {
-  constexpr std::size_t kSeed = 7;
   constexpr int kRounds = 5;
-  const SearchModel& search = models_[model];
   std::size_t before = 0;
   for (int round = 0; round < kRounds; ++round) {
-    const double depth = (pose * search.center).z();
-    if (!(depth >= options_.min_depth_m) || !(depth <= options_.max_depth_m)) return {};
-    const Eigen::Vector3d sight = -(pose.R.transpose() * pose.t) - search.center;
-    const std::vector<std::uint16_t>& seen = search.seen[nearest_view(sight)];
-    const std::size_t need = std::max(
-        kLeastHits,
-        static_cast<std::size_t>(std::ceil(kLeastShare * static_cast<double>(seen.size()))));
+    const std::vector<std::uint16_t>* seen = seen_at(model, pose);
+    if (seen == nullptr) return {};
     const std::size_t hits =
-        collect(model, pose, seen, kLook_px * options_.scale, std::max(before + 1, kSeed));
-    if (hits < kSeed || hits <= before) return {};
-    if (hits >= need) return matches_;
+        collect(model, pose, *seen, kLook_px * options_.scale, std::max(before + 1, kGrowFrom));
+    if (hits < kGrowFrom || hits <= before) return {};
+    if (hits >= hits_needed(seen->size())) return matches_;
     before = hits;
     if (!refine(model, pose, nullptr)) return {};
   }

@@ -66,6 +66,10 @@ class PoseCheck {
   // The quick look: matches within 8 px, enough of them to go on with. Empty: not enough.
   std::span<const Match> look(std::uint32_t model, const RigidPose& pose);
 
+  // How many visible points lie within 8 px of a feature, a part of them by chance; 0 where that is
+  // too few for the quick look and for growing.
+  std::size_t count_near(std::uint32_t model, const RigidPose& pose);
+
   // Where the quick look fails but seven points agree: refines the pose on them and looks again, as
   // long as their number grows. A pose from a small part of a large model is not good enough yet at
   // its far end.
@@ -85,6 +89,7 @@ class PoseCheck {
   std::size_t looks() const { return looks_; }
 
  private:
+  const std::vector<std::uint16_t>* seen_at(std::uint32_t model, const RigidPose& pose) const;
   std::size_t collect(std::uint32_t model,
                       const RigidPose& pose,
                       std::span<const std::uint16_t> seen,

@@ -14,6 +14,9 @@
 #include "engine/mono/candidate_pool.hpp"
 #include "engine/mono/corner_search.hpp"
 #include "engine/mono/find_features.hpp"
+#include "engine/mono/four_index.hpp"
+#include "engine/mono/four_search.hpp"
+#include "engine/mono/image_fours.hpp"
 #include "engine/mono/image_quads.hpp"
 #include "engine/mono/mirror_rival.hpp"
 #include "engine/mono/quad_index.hpp"
@@ -27,7 +30,7 @@ namespace {
 
 // Fours of image points whose codes are worked out: at 60 features all there are; 400 linked ones
 // would give a million.
-constexpr std::size_t kMostQuads = 20000;
+constexpr std::size_t kMostQuads = 20000, kMostFours = 20000;
 // Those with two links only are many and say little: a sample of them.
 constexpr std::size_t kMostPairs = 3000;
 // Single votes tried of either. By landmarkdb-bench-mono (seed 11, 100 models, 60 features): 4000
@@ -113,6 +116,7 @@ class Recognizer::Impl {
         models_(std::move(prepared.models)),
         corner_models_(std::move(prepared.corners)),
         mirrors_(std::move(prepared.mirrors)),
+        fours_(models_, context.threads),
         index_(models_, context) {}
   std::vector<char> wanted(const RecognizeOptions& options) const;
   bool search(const ImageView& image,
@@ -126,6 +130,7 @@ class Recognizer::Impl {
   std::vector<SearchModel> models_;
   std::vector<CornerModel> corner_models_;  // as models_
   std::vector<SearchModel> mirrors_;        // of the models, in their order
+  FourIndex fours_;
   QuadIndex index_;
 };
 
@@ -149,20 +154,41 @@ bool Recognizer::Impl::search(const ImageView& image,
                               const RunContext& run,
                               CandidatePool& pool,
                               RecognizeTimings& timings) const {
-  bool any_linked = false;
+  bool any_linked = false, any_flat = false;
   unsigned free_types = 0;
-  for (std::size_t i = 0; i < models_.size(); ++i) {
+  std::vector<char> by_fours(models_.size(), 0), flat(models_.size(), 0);
+  for (std::uint32_t i = 0; i < models_.size(); ++i) {
     if (!wanted[i]) continue;
-    const bool linked = is_linked(models_[i].model());
-    any_linked = any_linked || linked;
-    if (linked && image.link_count() > 0) continue;
+    if (is_linked(models_[i].model()) && image.link_count() > 0) {
+      by_fours[i] = 1;
+      flat[i] = fours_.often_flat(i) ? 1 : 0;
+      any_linked = true;
+      any_flat = any_flat || flat[i] != 0;
+      continue;
+    }
     for (const ModelFeature& point : models_[i].model().points)
       free_types |= 1U << static_cast<unsigned>(point.type);
   }
-  VoteOptions votes{options.min_depth_m, options.max_depth_m, wanted, kMostSingles};
   bool complete = true;
+  if (any_linked) {
+    ImageFours fours;
+    {
+      const StageTimer timer(timings.lookup);
+      fours = linked_fours(image, kMostFours);
+    }
+    const StageTimer timer(timings.verify);
+    complete = search_by_fours(models_,
+                               fours_,
+                               image,
+                               fours.fours,
+                               {options.min_depth_m, options.max_depth_m, by_fours},
+                               run,
+                               pool) &&
+               !fours.cut_short;
+  }
+  VoteOptions votes{options.min_depth_m, options.max_depth_m, flat, kMostSingles};
   for (const auto find_quads : {chained_quads, linked_quads}) {
-    if (!any_linked || image.link_count() == 0 || pool.beyond_doubt()) break;
+    if (!any_flat || pool.beyond_doubt()) break;
     ImageQuads quads;
     {
       const StageTimer timer(timings.lookup);
@@ -175,6 +201,7 @@ bool Recognizer::Impl::search(const ImageView& image,
   }
   if (free_types != 0) {
     votes.most_singles = kMostSingles;
+    votes.wanted = wanted;
     ImageQuads quads;
     {
       const StageTimer timer(timings.lookup);
