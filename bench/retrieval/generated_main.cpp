@@ -2,7 +2,7 @@
 // the evidence of every best pose.
 
 #include <algorithm>
-#include <array>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -11,7 +11,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bench/retrieval/frame_tally.hpp"
 #include "bench/retrieval/funnel.hpp"
+#include "bench/retrieval/pose_errors.hpp"
+#include "cli/write_file.hpp"
 #include "datasets/depth_camera.hpp"
 #include "datasets/place.hpp"
 #include "datasets/scanner.hpp"
@@ -26,15 +29,19 @@ namespace landmarkdb::bench {
 namespace {
 
 struct Settings {
-  int places = 6;     // in the catalogue
-  int strangers = 2;  // not in it: whatever their frames get is wrong
-  int frames = 10;    // a place
+  int catalogs = 1;          // one after another; their seeds are 100 apart
+  int places = 6;            // in a catalogue
+  int strangers = 2;         // not in it: whatever their frames get is wrong
+  int frames = 10;           // a place
+  int stranger_frames = -1;  // a stranger; -1: as many
   std::uint64_t seed = 1000;
   std::size_t points = 600'000;  // a place
   int only = -1;                 // ask the frames of this place alone
   bool gravity = false;
+  bool both = false;    // without gravity, then with it
   bool funnel = false;  // say at which stage each frame was lost
   int threads = 2;
+  std::string json;
 };
 
 datasets::Place place_of(const Settings& settings, int i) {
@@ -75,168 +82,182 @@ CatalogEntry index_place(const datasets::Place& place,
   return entry;
 }
 
-struct Tally {
-  int asked = 0, right = 0, wrong = 0, ambiguous = 0, first = 0;
-  std::vector<double> metres, degrees, milliseconds;
-};
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
+// The share of the frame's points that lie near the entry's surface at the true pose.
+double scanned_share(const datasets::DepthFrame& frame, const Entry& entry) {
+  constexpr std::size_t kEvery = 37;  // of 307,200 pixels, some 8,000; no divisor of the width
+  const Eigen::Vector3d origin = entry.record().prepared.origin;
+  std::size_t seen = 0;
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < frame.cloud.size(); i += kEvery) {
+    const Eigen::Vector3f& p = frame.cloud.points[i];
+    if (!p.allFinite()) continue;
+    ++seen;
+    const Eigen::Vector3d there = frame.T_scene_camera * p.cast<double>() - origin;
+    near += entry.grid.near(there.cast<float>()) != nullptr ? 1U : 0U;
+  }
+  return seen == 0 ? 0.0 : static_cast<double>(near) / static_cast<double>(seen);
 }
 
-// Asks one frame; `name` is the place it was taken in, or empty for a stranger's.
-void ask(const datasets::DepthFrame& frame,
-         const std::string& name,
-         int number,
-         const Localizer& localizer,
-         const Settings& settings,
-         const RunContext& context,
-         Tally& all,
-         Tally& informative) {
-  QueryOptions options;
-  if (settings.gravity) options.up = frame.up_camera;
-  const QueryResult answer = localizer.query(frame.cloud, options, context);
-  double metres = 1e9;
-  double degrees = 180.0;
-  const Fit fit = answer.hypotheses.empty() ? Fit{} : answer.hypotheses[0].fit;
-  if (!answer.hypotheses.empty() && answer.hypotheses[0].scene == name) {
-    const Eigen::Matrix4d& T = answer.hypotheses[0].T_scene_sensor;
-    metres = (T.topRightCorner<3, 1>() - frame.T_scene_camera.translation()).norm();
-    degrees =
-        rotation_angle_rad(frame.T_scene_camera.linear().transpose() * T.topLeftCorner<3, 3>()) *
-        57.29577951308232;
-  }
-  const bool right = metres < 0.10 && degrees < 5.0;
-  constexpr double kInformative = 0.03;
-  for (Tally* tally : {&all, &informative}) {
-    if (tally == &informative && (frame.normal_spread < kInformative || name.empty())) continue;
-    if (tally == &all && name.empty()) continue;
-    ++tally->asked;
-    tally->first += right ? 1 : 0;
-    tally->ambiguous += answer.status == QueryStatus::kAmbiguous ? 1 : 0;
-    if (answer.status == QueryStatus::kLocalized) ++(right ? tally->right : tally->wrong);
-    if (right && answer.status == QueryStatus::kLocalized) {
-      tally->metres.push_back(metres);
-      tally->degrees.push_back(degrees);
-    }
-    tally->milliseconds.push_back(answer.timings.total.count());
-  }
-  std::printf(
-      "%s,%d,%.4f,%d,%d,%.4f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%u,%lu,%.4f,%.0f,%.4f,%."
-      "4f,%.3f,"
-      "%.0f\n",
-      name.empty() ? "stranger" : name.c_str(),
-      number,
-      frame.normal_spread,
-      static_cast<int>(answer.status),
-      right ? 1 : 0,
-      std::min(metres, 99.0),
-      degrees,
-      answer.hypotheses.empty() ? 0.0 : answer.hypotheses[0].confidence,
-      fit.quality,
-      fit.overlap,
-      fit.explained,
-      fit.coverage,
-      fit.free_space_violation,
-      fit.margin,
-      fit.observability,
-      answer.hypotheses.empty() ? 0U : answer.hypotheses[0].counts.inliers,
-      static_cast<unsigned long>(answer.query.keypoints),
-      fit.rmse_m,
-      fit.agreeing,
-      fit.contrast,
-      fit.contradicted,
-      right ? testing::normalised_squared_error(answer.hypotheses[0].covariance,
-                                                answer.hypotheses[0].T_scene_sensor,
-                                                frame.T_scene_camera)
-            : 0.0,
-      answer.timings.total.count());
+void print_row(const AskedFrame& asked, const QueryResult& answer, const Eigen::Isometry3d& truth) {
+  const bool any = !answer.hypotheses.empty();
+  const Fit fit = any ? answer.hypotheses[0].fit : Fit{};
+  std::printf("%s,%d,%.4f,%d,%d,%.4f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,",
+              asked.stranger() ? "stranger" : asked.place.c_str(),
+              asked.number,
+              asked.normal_spread,
+              static_cast<int>(asked.status),
+              asked.first() ? 1 : 0,
+              std::min(asked.metres, 99.0),
+              asked.degrees,
+              any ? answer.hypotheses[0].confidence : 0.0,
+              fit.quality,
+              fit.overlap,
+              fit.explained,
+              fit.coverage,
+              fit.free_space_violation,
+              fit.margin,
+              fit.observability);
+  std::printf("%u,%lu,%.4f,%.0f,%.4f,%.4f,%.3f,%.3f,%d,%d,%.0f\n",
+              any ? answer.hypotheses[0].counts.inliers : 0U,
+              static_cast<unsigned long>(answer.query.keypoints),
+              fit.rmse_m,
+              fit.agreeing,
+              fit.contrast,
+              fit.contradicted,
+              asked.first()
+                  ? testing::normalised_squared_error(
+                        answer.hypotheses[0].covariance, answer.hypotheses[0].T_scene_sensor, truth)
+                  : 0.0,
+              asked.scanned,
+              asked.gravity ? 1 : 0,
+              asked.catalog,
+              asked.milliseconds);
   std::fflush(stdout);
 }
 
-void print(const char* what, const Tally& tally) {
-  std::fprintf(stderr,
-               "%-12s asked %d, first %d (%.0f %%), localized right %d (%.0f %%), wrong %d, "
-               "ambiguous %d; median "
-               "%.4f m %.3f deg, %.0f ms\n",
-               what,
-               tally.asked,
-               tally.first,
-               100.0 * tally.first / std::max(tally.asked, 1),
-               tally.right,
-               100.0 * tally.right / std::max(tally.asked, 1),
-               tally.wrong,
-               tally.ambiguous,
-               median(tally.metres),
-               median(tally.degrees),
-               median(tally.milliseconds));
+// Asks one frame; `asked` says what is known of it and is filled with the rest.
+void ask(const datasets::DepthFrame& frame,
+         const Localizer& localizer,
+         const RunContext& context,
+         AskedFrame& asked) {
+  QueryOptions options;
+  if (asked.gravity) options.up = frame.up_camera;
+  const QueryResult answer = localizer.query(frame.cloud, options, context);
+  asked.status = answer.status;
+  asked.milliseconds = answer.timings.total.count();
+  if (!answer.hypotheses.empty() && answer.hypotheses[0].scene == asked.place) {
+    Eigen::Isometry3d estimate;
+    estimate.matrix() = answer.hypotheses[0].T_scene_sensor;
+    const PoseError error = pose_error(frame.T_scene_camera, estimate);
+    asked.metres = error.metres;
+    asked.degrees = error.degrees;
+  }
+  print_row(asked, answer, frame.T_scene_camera);
 }
 
-int run(const Settings& settings) {
-  RunContext context;
-  context.threads = settings.threads;
-  auto catalog = std::make_shared<Catalog>();
+void print_funnel(const Funnel& funnel) {
+  std::printf(
+      "#funnel keypoints %zu proposals %zu near %zu loose %zu ranked %d assessed %d nearest "
+      "%.3f truth %.4f drift %.3f best %.4f\n",
+      funnel.keypoints,
+      funnel.proposals,
+      funnel.near_proposals,
+      funnel.loose_proposals,
+      funnel.ranked,
+      funnel.assessed,
+      funnel.nearest_m,
+      funnel.truth_score,
+      funnel.truth_drift_m,
+      funnel.best_score);
+}
+
+// A catalogue of the settings' places, and the strangers behind them.
+struct Generated {
   std::vector<datasets::Place> places;
+  std::shared_ptr<Catalog> catalog = std::make_shared<Catalog>();
+  std::vector<Entry> entries;  // as the localizer makes them
+};
+
+Generated generate(const Settings& settings, const RunContext& context) {
+  Generated made;
   for (int i = 0; i < settings.places + settings.strangers; ++i) {
-    places.push_back(place_of(settings, i));
-    if (i < settings.places)
-      catalog->entries.push_back(index_place(places.back(), settings, i, context));
+    made.places.push_back(place_of(settings, i));
+    if (i >= settings.places) continue;
+    made.catalog->entries.push_back(index_place(made.places.back(), settings, i, context));
+    made.entries.push_back(make_entry(made.catalog->entries.back()));
   }
-  const Localizer localizer(catalog, context);
-  std::vector<Entry> entries;
-  if (settings.funnel) {
-    for (const CatalogEntry& stored : catalog->entries) entries.push_back(make_entry(stored));
-  }
-  const std::vector<Level> levels = make_levels(entries);
-  std::puts(
-      "place,frame,spread,status,right,metres,degrees,confidence,quality,overlap,explained,"
-      "coverage,"
-      "crossed,margin,observability,inliers,keypoints,rmse_m,agreeing,contrast,contradicted,nees,"
-      "ms");
-  Tally all;
-  Tally informative;
-  for (std::size_t p = 0; p < places.size(); ++p) {
-    if (settings.only >= 0 && p != static_cast<std::size_t>(settings.only)) continue;
-    const bool known = p < static_cast<std::size_t>(settings.places);
-    const auto poses = datasets::sample_camera_poses(
-        places[p], static_cast<std::size_t>(settings.frames), settings.seed);
-    for (int f = 0; f < settings.frames; ++f) {
-      datasets::DepthCameraOptions camera;
-      camera.seed = settings.seed + static_cast<std::uint64_t>(f);
-      const auto frame =
-          datasets::render_depth(places[p], poses[static_cast<std::size_t>(f)], camera, context);
-      ask(frame,
-          known ? "place-" + std::to_string(p) : "",
-          f,
-          localizer,
-          settings,
-          context,
-          all,
-          informative);
+  return made;
+}
+
+void ask_place(const Generated& made,
+               std::size_t p,
+               const Settings& settings,
+               int number,
+               const Localizer& localizer,
+               const RunContext& context,
+               std::vector<AskedFrame>& asked) {
+  const bool known = p < made.entries.size();
+  const std::vector<Level> levels =
+      settings.funnel ? make_levels(made.entries) : std::vector<Level>{};
+  const int count =
+      known || settings.stranger_frames < 0 ? settings.frames : settings.stranger_frames;
+  const auto poses =
+      datasets::sample_camera_poses(made.places[p], static_cast<std::size_t>(count), settings.seed);
+  for (int f = 0; f < count; ++f) {
+    datasets::DepthCameraOptions camera;
+    camera.seed = settings.seed + static_cast<std::uint64_t>(f);
+    const auto frame =
+        datasets::render_depth(made.places[p], poses[static_cast<std::size_t>(f)], camera, context);
+    for (const bool gravity : {false, true}) {
+      if (!settings.both && gravity != settings.gravity) continue;
+      AskedFrame one;
+      if (known) one.place = made.catalog->entries[p].record->name;
+      one.catalog = number;
+      one.number = f;
+      one.gravity = gravity;
+      one.normal_spread = frame.normal_spread;
+      one.scanned = known ? scanned_share(frame, made.entries[p]) : 0.0;
+      ask(frame, localizer, context, one);
+      asked.push_back(one);
       if (!settings.funnel || !known) continue;
       QueryOptions options;
-      if (settings.gravity) options.up = frame.up_camera;
-      const Funnel funnel =
-          follow(frame.cloud, options, entries, levels, p, frame.T_scene_camera, context);
-      std::printf(
-          "#funnel keypoints %zu proposals %zu near %zu loose %zu ranked %d assessed %d nearest "
-          "%.3f truth %.4f drift %.3f best %.4f\n",
-          funnel.keypoints,
-          funnel.proposals,
-          funnel.near_proposals,
-          funnel.loose_proposals,
-          funnel.ranked,
-          funnel.assessed,
-          funnel.nearest_m,
-          funnel.truth_score,
-          funnel.truth_drift_m,
-          funnel.best_score);
+      if (gravity) options.up = frame.up_camera;
+      print_funnel(
+          follow(frame.cloud, options, made.entries, levels, p, frame.T_scene_camera, context));
     }
   }
-  print("all", all);
-  print("informative", informative);
+}
+
+std::string in_words(const Settings& s) {
+  return std::to_string(s.catalogs) + " catalogues of " + std::to_string(s.places) +
+         " generated places, " + std::to_string(s.points) + " points each, " +
+         std::to_string(s.frames) + " frames a place, " + std::to_string(s.strangers) +
+         " strangers, seed " + std::to_string(s.seed) + ", " + std::to_string(s.threads) +
+         " threads";
+}
+
+int run(Settings settings) {
+  RunContext context;
+  context.threads = settings.threads;
+  const std::string words = in_words(settings);
+  std::puts(
+      "place,frame,spread,status,right,metres,degrees,confidence,quality,overlap,explained,"
+      "coverage,crossed,margin,observability,inliers,keypoints,rmse_m,agreeing,contrast,"
+      "contradicted,nees,scanned,gravity,catalog,ms");
+  std::vector<AskedFrame> asked;
+  constexpr std::uint64_t kSeedStep = 100;
+  for (int number = 0; number < settings.catalogs; ++number, settings.seed += kSeedStep) {
+    const Generated made = generate(settings, context);
+    const Localizer localizer(made.catalog, context);
+    for (std::size_t p = 0; p < made.places.size(); ++p) {
+      if (settings.only >= 0 && p != static_cast<std::size_t>(settings.only)) continue;
+      ask_place(made, p, settings, number, localizer, context, asked);
+    }
+    std::fprintf(stderr, "%s", tally_table(tally_rows(asked)).c_str());
+  }
+  if (!settings.json.empty()) {
+    cli::write_file(settings.json, tally_json(tally_rows(asked), words), "--json");
+  }
   return 0;
 }
 
@@ -247,14 +268,19 @@ int run(const Settings& settings) {
 int main(int argc, char** argv) {
   landmarkdb::bench::Settings settings;
   CLI::App app{"Recall and pose error of depth frames in generated places"};
-  app.add_option("--places", settings.places, "Places in the catalogue");
+  app.add_option("--catalogs", settings.catalogs, "Catalogues, one after another, seeds 100 apart");
+  app.add_option("--places", settings.places, "Places in a catalogue");
   app.add_option(
       "--strangers", settings.strangers, "Places whose frames are asked but that are not in it");
   app.add_option("--frames", settings.frames, "Frames a place");
+  app.add_option(
+      "--stranger-frames", settings.stranger_frames, "Frames a stranger, if not as many");
   app.add_option("--seed", settings.seed, "Of the places, frames and noise");
   app.add_option("--points", settings.points, "Scanned points a place");
   app.add_option("--only", settings.only, "Ask the frames of this place alone");
   app.add_flag("--gravity", settings.gravity, "Tell the query which way is up");
+  app.add_flag("--both", settings.both, "Ask every frame without gravity and with it");
+  app.add_option("--json", settings.json, "Write the summary as JSON too");
   app.add_flag("--funnel", settings.funnel, "Say at which stage each frame was lost");
   app.add_option("--threads", settings.threads, "Threads");
   CLI11_PARSE(app, argc, argv);

@@ -10,6 +10,7 @@ namespace landmarkdb {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr int kWidestPatch = 6;  // cells to each side: what stands at the lens fills no more
 
 }  // namespace
 
@@ -23,6 +24,25 @@ RangeImage::RangeImage(std::span<const Eigen::Vector3f> points,
     measure(points);
     if (complete_share() >= kEnough || step_rad_ >= kCoarsestRad) break;
   }
+  measure_cone(points);
+}
+
+void RangeImage::measure_cone(std::span<const Eigen::Vector3f> points) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3f& point : points) sum += (point - viewpoint_).stableNormalized();
+  if (!(sum.norm() > 0.0F)) return;
+  cone_axis_ = sum.normalized();
+  float least = 1.0F;
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3f ray = point - viewpoint_;
+    if (ray.norm() > 0.0F) least = std::min(least, cone_axis_.dot(ray) / ray.norm());
+  }
+  // From a measured direction to the centre of a patch that still fills its cell: so many cells
+  // along both sides, and a cell for the directions' places in theirs.
+  constexpr double kDiagonal = std::numbers::sqrt2;
+  const double beyond = kDiagonal * (kWidestPatch + 2) * step_rad_;
+  const double half_angle = std::acos(std::clamp(static_cast<double>(least), -1.0, 1.0)) + beyond;
+  cone_cosine_ = half_angle < std::numbers::pi ? static_cast<float>(std::cos(half_angle)) : -1.0F;
 }
 
 void RangeImage::measure(std::span<const Eigen::Vector3f> points) {
@@ -104,13 +124,12 @@ std::vector<RangeImage::Predicted> RangeImage::render(const SightSurface& surfac
                                                       float patch_m) const {
   const Eigen::Matrix3f R = T_here_surface.linear().cast<float>();
   const Eigen::Vector3f t = T_here_surface.translation().cast<float>() - viewpoint_;
-  constexpr int kWidestPatch = 6;  // cells to each side: what stands at the lens fills no more
   const float reach = 2.0F * max_range_m_;  // what lies further could only be hidden
   std::vector<Predicted> predicted(cells_.size(), {kInfinity, false});
   for (std::size_t i = 0; i < surface.points.size(); ++i) {
     const Eigen::Vector3f ray = R * surface.points[i] + t;
     const float range = ray.norm();
-    if (!(range > 0.0F) || range > reach) continue;
+    if (!(range > 0.0F) || range > reach || cone_axis_.dot(ray) < cone_cosine_ * range) continue;
     const bool back = !surface.normals.empty() && ray.dot(R * surface.normals[i]) > 0.0F;
     const Place place = place_of(ray);
     const float half_patch = 0.5F * patch_m / (range * static_cast<float>(step_rad_));

@@ -83,11 +83,16 @@ class RangeImage {
   Place place_of(const Eigen::Vector3f& ray) const;
   std::size_t index_of(const Place& place) const;
   Cell widen(std::size_t cell) const;
+  void measure_cone(std::span<const Eigen::Vector3f> points);
 
   Eigen::Vector3f viewpoint_;
   double step_rad_ = 0.0;
   int side_ = 0;  // cells along an edge of a face
   float max_range_m_ = 0.0F;
+  // Around all directions measured, and as far beyond them as a patch reaches: what a surface
+  // shows outside of it is compared with nothing.
+  Eigen::Vector3f cone_axis_ = Eigen::Vector3f::UnitZ();
+  float cone_cosine_ = -1.0F;
   std::vector<Cell> cells_;
   std::vector<Cell>
       widened_;  // over the 3 x 3 cells around; furthest = 0 where one of these is unknown

@@ -20,8 +20,8 @@ struct Quota {
   std::size_t entries = 0;
   std::size_t each = 0;
 };
-constexpr Quota kCoarse{.best = 60, .entries = 10, .each = 8};
-constexpr Quota kFine{.best = 16, .entries = 6, .each = 4};
+constexpr Quota kCoarse{.best = 80, .entries = 10, .each = 10};
+constexpr Quota kFine{.best = 20, .entries = 6, .each = 6};
 
 // Those of `sorted` (best first) that the quota lets through, in their order.
 template <typename Item, typename EntryOf>

@@ -33,7 +33,7 @@ std::size_t neighbours_for(std::size_t places, std::size_t keypoints) {
 }
 
 // The proposals to be settled are shared among the places.
-constexpr std::size_t kSettled = 4000;
+constexpr std::size_t kSettled = 6000;
 constexpr std::size_t kSettledAPlace = 1500;
 constexpr std::size_t kSettledAtLeast = 300;
 

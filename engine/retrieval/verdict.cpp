@@ -123,10 +123,11 @@ Verdict judge(std::vector<Assessed> assessed,
   const double least_contrast = in_reach ? options.least_contrast_in_reach : options.least_contrast;
   const bool sure = verdict.judged[0].confidence >= options.sure_confidence;
   const bool slides = !evidence.of_object && evidence.observability < options.least_observability;
-  const bool rivalled = slides || rival_score >= options.rival_share * poses[0].score ||
-                        (!sure && evidence.contrast < least_contrast);
+  const bool close =
+      rival_score >= options.rival_share * poses[0].score || evidence.contrast < least_contrast;
+  const bool rivalled = slides || (!sure && close);
   const double alone = confidence_alone(poses[0].evidence, poses[0].score);
-  if (!rivalled && alone >= options.least_alone &&
+  if (!rivalled && (sure || alone >= options.least_alone) &&
       verdict.judged[0].confidence >= options.min_confidence) {
     verdict.status = QueryStatus::kLocalized;
   } else if (rivalled && alone >= options.min_confidence) {

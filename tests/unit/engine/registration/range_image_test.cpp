@@ -57,6 +57,28 @@ TEST(RangeImage, AgreesWithTheSurfaceThatWasMeasured) {
   EXPECT_EQ(counts.hidden, 0U);
 }
 
+TEST(RangeImage, SeesAPatchWhoseCentreLiesOutsideTheView) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  // 26.6 deg to the view's edge; the patch spans 5 deg to each side of 30 deg.
+  const float angle = 30.0F * std::numbers::pi_v<float> / 180.0F;
+  const Points beside{{0.5F * std::sin(angle), 0.0F, 0.5F * std::cos(angle)}};
+  const SightCounts counts =
+      image.compare({beside}, Eigen::Isometry3d::Identity(), 0.087F, kTolerance);
+  EXPECT_GT(counts.crossed, 0U);
+}
+
+TEST(RangeImage, IsMovedByNothingBehindTheSensor) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  Points surface = patch({-1, -1}, {1, 1}, 2.0F);
+  const SightCounts before = compare(image, surface);
+  const Points behind = patch({-1, -1}, {1, 1}, -0.5F);
+  surface.insert(surface.end(), behind.begin(), behind.end());
+  const SightCounts after = compare(image, surface);
+  EXPECT_EQ(after.agree, before.agree);
+  EXPECT_EQ(after.crossed, 0U);
+  EXPECT_EQ(after.predicted(), before.predicted());
+}
+
 TEST(RangeImage, SeesThatARayWentThroughASurfaceBeforeTheWall) {
   const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
   const SightCounts counts = compare(image, patch({-0.3F, -0.3F}, {0.3F, 0.3F}, 1.0F));

@@ -81,6 +81,32 @@ TEST(Judge, CallsARivalElsewhereAmbiguousAndListsBoth) {
   EXPECT_LT(verdict.judged[0].margin, 0.02);
 }
 
+// Two poses that were compared point by point: `contrast` speaks for the first.
+std::vector<Assessed> compared(Assessed best, Assessed rival, float contrast) {
+  best.id = 0;
+  rival.id = 1;
+  best.contrast = {0.0F, contrast};
+  rival.contrast = {-contrast, 0.0F};
+  return {best, rival};
+}
+
+TEST(Judge, TakesASurePoseBesideACloseRivalButNoneThatIsHardlyBetter) {
+  Assessed best = good(0, kZero, 0.8);
+  best.evidence.agreeing = 300.0;
+  const Assessed rival = good(0, {5, 0, 0}, 0.71);  // 89 % of the best one's score
+  const auto told = [&](float contrast) {
+    return judge(compared(best, rival, contrast), entries(1, 0.05), kZero, {});
+  };
+  const Verdict sure = told(0.9F);
+  EXPECT_GE(sure.judged[0].confidence, VerdictOptions{}.sure_confidence);
+  EXPECT_EQ(sure.status, QueryStatus::kLocalized);
+  const Verdict unsure = told(-0.3F);
+  EXPECT_LT(unsure.judged[0].confidence, VerdictOptions{}.sure_confidence);
+  EXPECT_EQ(unsure.status, QueryStatus::kAmbiguous);
+  best.evidence.observability = 0.005;
+  EXPECT_NE(told(0.9F).status, QueryStatus::kLocalized);
+}
+
 TEST(Judge, CallsTheSamePoseInAnotherEntryARival) {
   const Verdict verdict =
       judge({good(0, kZero, 0.8), good(1, kZero, 0.8)}, entries(2, 0.05), kZero, {});
