@@ -126,6 +126,17 @@ std::optional<v1::Envelope> Connection::receive(const WaitLimits& limits) {
   }
 }
 
+namespace {
+
+// The server's word. What it stopped of itself, as it shuts down, was not interrupted by us.
+Error refused(const v1::Error& error, const RunContext& context) {
+  Error reason = from_proto(error);
+  if (reason.code() != ErrorCode::kCancelled || context.stop.stop_requested()) return reason;
+  return Error(ErrorCode::kUnavailable, std::string("the server gave up: ") + reason.what());
+}
+
+}  // namespace
+
 std::optional<v1::Envelope> Connection::receive_reply(std::uint64_t id,
                                                       const WaitLimits& limits,
                                                       const RunContext& context) {
@@ -142,7 +153,7 @@ std::optional<v1::Envelope> Connection::receive_reply(std::uint64_t id,
       }
       case v1::Envelope::kError:  // number 0: of the connection, and so of our request too
         if (envelope->request_id() == id || envelope->request_id() == 0) {
-          throw from_proto(envelope->error());
+          throw refused(envelope->error(), context);
         }
         continue;
       case v1::Envelope::kProgress:

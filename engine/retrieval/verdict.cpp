@@ -75,6 +75,61 @@ double least_contrast(std::size_t i,
   return least;
 }
 
+// A pose among others, of which the best rival has `rival_score`.
+struct Standing {
+  Judged judged;
+  double rival_score = 0.0;
+};
+
+Standing judge_among(std::size_t i,
+                     std::span<const Assessed> poses,
+                     std::span<const Entry> entries) {
+  Standing standing{.judged = {.pose = poses[i], .confidence = 0.0, .margin = 0.0},
+                    .rival_score = best_rival(i, poses, entries)};
+  Judged& judged = standing.judged;
+  judged.pose.evidence.contrast = least_contrast(i, poses, entries);
+  if (poses[i].score > 0.0) {
+    judged.margin = std::max(0.0, 1.0 - standing.rival_score / poses[i].score);
+  }
+  judged.confidence = confidence_of(judged.pose.evidence, poses[i].score, judged.margin);
+  return standing;
+}
+
+bool is_sure(const Standing& best, const VerdictOptions& options) {
+  return best.judged.confidence >= options.sure_confidence;
+}
+
+// The best pose cannot be told from another, or from itself slid along a wall.
+bool is_rivalled(const Standing& best, const VerdictOptions& options) {
+  const Evidence& evidence = best.judged.pose.evidence;
+  if (!evidence.of_object && evidence.observability < options.least_observability) return true;
+  if (is_sure(best, options)) return false;
+  const double share = best.rival_score / best.judged.pose.score;
+  const double least =
+      share >= options.reach_share ? options.least_contrast_in_reach : options.least_contrast;
+  return share >= options.rival_share || evidence.contrast < least;
+}
+
+bool is_taken(const Standing& best, const VerdictOptions& options) {
+  if (is_rivalled(best, options) || best.judged.confidence < options.min_confidence) return false;
+  const Assessed& pose = best.judged.pose;
+  return is_sure(best, options) ||
+         confidence_alone(pose.evidence, pose.score) >= options.least_alone;
+}
+
+// The best of the poses, and those that do not come close to it.
+std::vector<Assessed> without_close(std::span<const Assessed> poses,
+                                    std::span<const Entry> entries,
+                                    const VerdictOptions& options) {
+  std::vector<Assessed> kept{poses[0]};
+  for (std::size_t j = 1; j < poses.size(); ++j) {
+    const bool close = rivals(poses[0], poses[j], entries) &&
+                       poses[j].score >= options.rival_share * poses[0].score;
+    if (!close) kept.push_back(poses[j]);
+  }
+  return kept;
+}
+
 std::string why_not(const Judged& best) {
   char text[200];
   std::snprintf(
@@ -108,29 +163,16 @@ Verdict judge(std::vector<Assessed> assessed,
     verdict.reason = "pose: no proposal lies on the surface of any entry";
     return verdict;
   }
-  double rival_score = 0.0;  // of the best pose
+  const Standing best = judge_among(0, poses, entries);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    Judged judged{.pose = poses[i], .confidence = 0.0, .margin = 0.0};
-    const double rival = best_rival(i, poses, entries);
-    if (i == 0) rival_score = rival;
-    judged.pose.evidence.contrast = least_contrast(i, poses, entries);
-    if (poses[i].score > 0.0) judged.margin = std::max(0.0, 1.0 - rival / poses[i].score);
-    judged.confidence = confidence_of(judged.pose.evidence, poses[i].score, judged.margin);
-    verdict.judged.push_back(std::move(judged));
+    verdict.judged.push_back(judge_among(i, poses, entries).judged);
   }
-  const Evidence& evidence = verdict.judged[0].pose.evidence;
-  const bool in_reach = rival_score >= options.reach_share * poses[0].score;
-  const double least_contrast = in_reach ? options.least_contrast_in_reach : options.least_contrast;
-  const bool sure = verdict.judged[0].confidence >= options.sure_confidence;
-  const bool slides = !evidence.of_object && evidence.observability < options.least_observability;
-  const bool close =
-      rival_score >= options.rival_share * poses[0].score || evidence.contrast < least_contrast;
-  const bool rivalled = slides || (!sure && close);
   const double alone = confidence_alone(poses[0].evidence, poses[0].score);
-  if (!rivalled && (sure || alone >= options.least_alone) &&
-      verdict.judged[0].confidence >= options.min_confidence) {
+  if (is_taken(best, options)) {
     verdict.status = QueryStatus::kLocalized;
-  } else if (rivalled && alone >= options.min_confidence) {
+  } else if (is_rivalled(best, options) &&
+             (alone >= options.min_confidence ||
+              is_taken(judge_among(0, without_close(poses, entries, options), entries), options))) {
     verdict.status = QueryStatus::kAmbiguous;
   } else {
     verdict.status = QueryStatus::kNotFound;

@@ -186,6 +186,22 @@ TEST(Connection, ThrowsAnErrorReplyWithItsCodeAndField) {
   EXPECT_EQ(error.field(), "name");
 }
 
+TEST(Connection, TakesARequestThatTheServerStoppedForUnavailableNotInterrupted) {
+  FakeServer server([](FakePeer& peer) {
+    peer.greet();
+    const std::optional<v1::Envelope> request = peer.receive();
+    v1::Envelope reply;
+    reply.set_request_id(request->request_id());
+    reply.mutable_error()->set_code(v1::CODE_CANCELLED);
+    reply.mutable_error()->set_message("stopped on request during 'match'");
+    peer.send(reply);
+  });
+  Connection connection(options_for(server), {});
+  const Error error = error_of([&] { connection.call(stats_request(), {}); });
+  EXPECT_EQ(error.code(), ErrorCode::kUnavailable);
+  EXPECT_STREQ(error.what(), "the server gave up: stopped on request during 'match'");
+}
+
 TEST(Connection, HandsProgressOnAndSkipsAnswersToOtherRequests) {
   FakeServer server([](FakePeer& peer) {
     peer.greet();
