@@ -5,7 +5,9 @@
 
 #include "engine/geometry/pose.hpp"
 #include "engine/mono/model_triples.hpp"
+#include "engine/mono/pose_equations.hpp"
 #include "engine/mono/read_model.hpp"
+#include "engine/mono/search_model.hpp"
 #include "engine/mono/visibility.hpp"
 
 namespace landmarkdb::testing {
@@ -39,17 +41,17 @@ ImageFeatures MovingBox::features(int frame) const {
   const Eigen::Isometry3d T = T_camera_object(frame);
   const ModelVisibility visibility(model);
   const std::vector<bool> seen = visibility.points_from(T.inverse().translation());
+  const std::vector<PosePoint> points = pose_points(model);
   ImageFeatures features;
   features.width = camera.width;
   features.height = camera.height;
   std::vector<int> place(model.points.size(), -1);
   for (std::size_t i = 0; i < model.points.size(); ++i) {
     if (!seen[i]) continue;
-    const Eigen::Vector3d p = T * model.points[i].xyz;
     place[i] = static_cast<int>(features.points.size());
     ImageFeature feature;
     feature.type = model.points[i].type;
-    feature.uv = distort(camera, {p.x() / p.z(), p.y() / p.z()});
+    feature.uv = distort(camera, seen_ray(points[i], {T.linear(), T.translation()}).ray);
     features.points.push_back(feature);
   }
   for (const auto& [a, b] : model.edges) {

@@ -17,7 +17,8 @@ struct MovingBox {
 
   // The top with its circle and two sides are seen; frames from 0 on, 3 mm and 0.6 degrees apart.
   Eigen::Isometry3d T_camera_object(int frame) const;
-  // What a perfect detector would find: each seen point where it projects to, and their links.
+  // What a perfect detector would find: each seen point where its image is measured, and their
+  // links.
   ImageFeatures features(int frame) const;
 
   std::shared_ptr<const MonoModelRecord> record;  // named "box"
