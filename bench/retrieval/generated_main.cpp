@@ -36,7 +36,9 @@ struct Settings {
   int stranger_frames = -1;  // a stranger; -1: as many
   std::uint64_t seed = 1000;
   std::size_t points = 600'000;  // a place
+  double size = 1.0;             // of a place; 1: as the type has it
   int only = -1;                 // ask the frames of this place alone
+  bool twins = false;            // every second place is of the same plan as the one before
   bool gravity = false;
   bool both = false;    // without gravity, then with it
   bool funnel = false;  // say at which stage each frame was lost
@@ -46,10 +48,13 @@ struct Settings {
 
 datasets::Place place_of(const Settings& settings, int i) {
   const auto types = datasets::all_place_types();
+  const int plan = settings.twins ? i / 2 : i;
   datasets::PlaceOptions options;
-  options.type = types[(static_cast<std::size_t>(i) + settings.seed / 100) % types.size()];
-  options.seed = settings.seed + static_cast<std::uint64_t>(i);
+  options.type = types[(static_cast<std::size_t>(plan) + settings.seed / 100) % types.size()];
+  options.seed = settings.seed + static_cast<std::uint64_t>(plan);
+  options.twin = settings.twins ? static_cast<std::uint64_t>(i % 2) : 0;
   options.floors = 1;
+  options.size = settings.size;
   return datasets::make_place(options);
 }
 
@@ -277,6 +282,8 @@ int main(int argc, char** argv) {
       "--stranger-frames", settings.stranger_frames, "Frames a stranger, if not as many");
   app.add_option("--seed", settings.seed, "Of the places, frames and noise");
   app.add_option("--points", settings.points, "Scanned points a place");
+  app.add_option("--size", settings.size, "Size of the places, 1: as their type has it");
+  app.add_flag("--twins", settings.twins, "Every second place has the plan of the one before");
   app.add_option("--only", settings.only, "Ask the frames of this place alone");
   app.add_flag("--gravity", settings.gravity, "Tell the query which way is up");
   app.add_flag("--both", settings.both, "Ask every frame without gravity and with it");

@@ -103,11 +103,11 @@ bool is_sure(const Standing& best, const VerdictOptions& options) {
 bool is_rivalled(const Standing& best, const VerdictOptions& options) {
   const Evidence& evidence = best.judged.pose.evidence;
   if (!evidence.of_object && evidence.observability < options.least_observability) return true;
-  if (is_sure(best, options)) return false;
   const double share = best.rival_score / best.judged.pose.score;
+  if (share >= options.rival_share) return true;
   const double least =
       share >= options.reach_share ? options.least_contrast_in_reach : options.least_contrast;
-  return share >= options.rival_share || evidence.contrast < least;
+  return !is_sure(best, options) && evidence.contrast < least;
 }
 
 bool is_taken(const Standing& best, const VerdictOptions& options) {

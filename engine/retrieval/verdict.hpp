@@ -25,14 +25,14 @@ struct Verdict {
 
 struct VerdictOptions {
   double min_confidence = 0.5;
-  // From this confidence on a pose is taken unless its surface leaves a freedom open: margin,
-  // contrast and what the pose explains are in the confidence. Below it each is asked for itself,
-  // as follows.
-  double sure_confidence = 0.7;
   // A rival whose score reaches this share of the best one's explains the query about as well.
-  double rival_share = 0.88;
-  // So does one against which hardly more of the points that tell the two apart speak for the best,
-  // and one in reach (of this share) against which less than two thirds do (0.3 = 0.65 - 0.35).
+  double rival_share = 0.9;
+  // From this confidence on the rest is not asked, being in it: the contrast, and whether the pose
+  // is believable alone.
+  double sure_confidence = 0.7;
+  // A rival against which hardly more of the points that tell the two apart speak for the best is
+  // one too, and one in reach (of this share) against which less than two thirds do
+  // (0.3 = 0.65 - 0.35).
   double least_contrast = 0.1;
   double reach_share = 0.65;
   double least_contrast_in_reach = 0.3;

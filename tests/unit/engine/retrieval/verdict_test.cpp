@@ -90,10 +90,10 @@ std::vector<Assessed> compared(Assessed best, Assessed rival, float contrast) {
   return {best, rival};
 }
 
-TEST(Judge, TakesASurePoseBesideACloseRivalButNoneThatIsHardlyBetter) {
+TEST(Judge, TakesASurePoseWhateverTheContrastButNoneThatSlidesOrHasAnEqual) {
   Assessed best = good(0, kZero, 0.8);
   best.evidence.agreeing = 300.0;
-  const Assessed rival = good(0, {5, 0, 0}, 0.71);  // 89 % of the best one's score
+  Assessed rival = good(0, {5, 0, 0}, 0.71);  // 89 % of the best one's score
   const auto told = [&](float contrast) {
     return judge(compared(best, rival, contrast), entries(1, 0.05), kZero, {});
   };
@@ -103,6 +103,10 @@ TEST(Judge, TakesASurePoseBesideACloseRivalButNoneThatIsHardlyBetter) {
   const Verdict unsure = told(-0.3F);
   EXPECT_LT(unsure.judged[0].confidence, VerdictOptions{}.sure_confidence);
   EXPECT_EQ(unsure.status, QueryStatus::kAmbiguous);
+  rival.score = 0.73;  // 91 %
+  EXPECT_GE(told(0.9F).judged[0].confidence, VerdictOptions{}.sure_confidence);
+  EXPECT_EQ(told(0.9F).status, QueryStatus::kAmbiguous);
+  rival.score = 0.71;
   best.evidence.observability = 0.005;
   EXPECT_NE(told(0.9F).status, QueryStatus::kLocalized);
 }
