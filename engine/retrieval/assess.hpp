@@ -30,6 +30,7 @@ struct Assessed {
   std::size_t id = 0;  // its number among the poses that were compared
   // Against the pose of each id (see contrast_poses); empty where none were compared.
   std::vector<float> contrast;
+  double closeness = 0.0;  // 0..1: how closely the points lie on the surface; 0: not measured
 };
 
 // True when the two poses are of one entry and carry what they locate to the same spot, turned

@@ -29,6 +29,14 @@ std::vector<float> fits_of(const QueryView& view,
   return fits;
 }
 
+constexpr double kClose = 0.4;  // of the tolerance: a third of a voxel tells a slide of one voxel
+
+double mean_of(const std::vector<float>& fits) {
+  double sum = 0.0;
+  for (const float fit : fits) sum += static_cast<double>(fit);
+  return fits.empty() ? 0.0 : sum / static_cast<double>(fits.size());
+}
+
 float contrast_of(const std::vector<float>& mine, const std::vector<float>& other) {
   // As if this share of the points had been undecided: what a handful of points says is no proof.
   constexpr float kUndecided = 0.02F;
@@ -61,7 +69,10 @@ void contrast_poses(const SearchInput& input, SearchResult& result) {
         input.context.check("verify");
         const Assessed& pose = poses[places[k]];
         const Entry& entry = input.entries[pose.entry];
-        of_poses[k] = fits_of(*view, entry, pose.T_entry_sensor, common_tolerance_m(input, entry));
+        const double tolerance_m = common_tolerance_m(input, entry);
+        of_poses[k] = fits_of(*view, entry, pose.T_entry_sensor, tolerance_m);
+        poses[places[k]].closeness =
+            mean_of(fits_of(*view, entry, pose.T_entry_sensor, kClose * tolerance_m));
       }
     });
   }

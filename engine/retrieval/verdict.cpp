@@ -10,18 +10,27 @@ namespace landmarkdb {
 
 namespace {
 
-// Keeps the best of each group of like poses; they come sorted by score.
+bool better(const Assessed& a, const Assessed& b) {
+  return a.score != b.score ? a.score > b.score : a.entry < b.entry;
+}
+
+// Of two poses of one spot that score about alike the closer one is right: the score's tolerance
+// does not tell a few centimetres along a wall.
+bool is_closer(const Assessed& candidate, const Assessed& other) {
+  constexpr double kAlike = 0.9;
+  return candidate.score >= kAlike * other.score && candidate.closeness > other.closeness;
+}
+
+// Keeps one of each group of like poses, sorted by score.
 std::vector<Assessed> distinct(std::vector<Assessed> assessed,
                                std::span<const Entry> entries,
                                const Eigen::Vector3d& centre,
                                const VerdictOptions& options) {
-  std::sort(assessed.begin(), assessed.end(), [](const Assessed& a, const Assessed& b) {
-    return a.score != b.score ? a.score > b.score : a.entry < b.entry;
-  });
+  std::stable_sort(assessed.begin(), assessed.end(), better);
   std::vector<Assessed> kept;
   for (Assessed& candidate : assessed) {
     const Entry& entry = entries[candidate.entry];
-    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Assessed& other) {
+    const auto known = std::find_if(kept.begin(), kept.end(), [&](const Assessed& other) {
       return same_spot(candidate,
                        other,
                        entry,
@@ -29,8 +38,13 @@ std::vector<Assessed> distinct(std::vector<Assessed> assessed,
                        place_radius_m(entry, options),
                        options.different_rotation_rad);
     });
-    if (!known) kept.push_back(std::move(candidate));
+    if (known == kept.end()) {
+      kept.push_back(std::move(candidate));
+    } else if (is_closer(candidate, *known)) {
+      *known = std::move(candidate);
+    }
   }
+  std::stable_sort(kept.begin(), kept.end(), better);
   return kept;
 }
 

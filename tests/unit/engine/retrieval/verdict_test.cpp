@@ -129,6 +129,21 @@ TEST(Judge, TakesTheSamePoseTwiceForNoRival) {
   EXPECT_EQ(verdict.judged.size(), 1U);
 }
 
+TEST(Judge, KeepsTheCloserOfTwoPosesOfOneSpotThatScoreAlike) {
+  Assessed slid = good(0, {0.15, 0, 0}, 0.8);
+  slid.closeness = 0.5;
+  Assessed close = good(0, kZero, 0.78);
+  close.closeness = 0.6;
+  const auto kept = [&] { return judge({slid, close}, entries(1, 0.05), kZero, {}).judged; };
+  ASSERT_EQ(kept().size(), 1U);
+  EXPECT_EQ(kept()[0].pose.score, 0.78);
+  close.closeness = 0.4;
+  EXPECT_EQ(kept()[0].pose.score, 0.8);
+  close.closeness = 0.6;
+  close.score = 0.6;  // it explains far less
+  EXPECT_EQ(kept()[0].pose.score, 0.8);
+}
+
 TEST(Judge, CallsATurnOnTheSpotARival) {
   Assessed turned = good(0, kZero, 0.79);
   turned.T_entry_sensor.linear() = rotation_from_vector({0, 0, 3.14});
