@@ -7,11 +7,10 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "bench/mono/recognition.hpp"
-#include "bench/retrieval/logistic.hpp"
+#include "bench/mono/calibrate.hpp"
+#include "bench/mono/cases.hpp"
 #include "cli/main_guard.hpp"
 #include "engine/base/error.hpp"
 
@@ -21,58 +20,10 @@ using namespace landmarkdb;
 using namespace landmarkdb::bench;
 using nlohmann::json;
 
-struct Settings {
-  std::size_t scenes = 300, models = 100;
-  std::uint64_t seed = 10000;
-  std::string json_file;
-  bool cpu_time = false;
-  std::string only;  // rows whose name has this in it
-};
-
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
-struct Case {
-  const char* name;
-  SceneKind kind;
-  std::size_t types;
-  std::size_t features;
-  double clutter;
-  bool links, directions, edges;
-};
-
-constexpr Case kCases[] = {
-    {"3 types, 60 features, links", SceneKind::kKnown, 3, 60, -1.0, true, false, false},
-    {"the same, edge directions", SceneKind::kKnown, 3, 60, -1.0, true, true, false},
-    {"the same, directions and edges", SceneKind::kKnown, 3, 60, -1.0, true, true, true},
-    {"3 types, clutter 50 %, no links", SceneKind::kKnown, 3, 60, 0.5, false, false, false},
-    {"3 types, 100 features, links", SceneKind::kKnown, 3, 100, -1.0, true, false, false},
-    {"1 type, 60 features, links, directions", SceneKind::kKnown, 1, 60, -1.0, true, true, false},
-    {"unknown object, 60 features, links", SceneKind::kUnknown, 3, 60, -1.0, true, false, false},
-    {"unknown object, directions and edges", SceneKind::kUnknown, 3, 60, -1.0, true, true, true},
-    {"mirror image of a known object", SceneKind::kMirrored, 3, 60, -1.0, true, false, false},
-    {"mirror image, directions and edges", SceneKind::kMirrored, 3, 60, -1.0, true, true, true},
-    {"clutter alone, 60 features, links", SceneKind::kClutter, 3, 60, -1.0, true, false, false},
-    {"unknown object, 400 features, 1 type", SceneKind::kUnknown, 1, 400, -1.0, true, true, false},
-};
-
-RecognitionOptions options_of(const Case& one, const Settings& settings, std::uint64_t seed) {
-  RecognitionOptions options;
-  options.models = settings.models;
-  options.scenes = settings.scenes;
-  options.seed = seed;
-  options.kind = one.kind;
-  options.cpu_time = settings.cpu_time;
-  options.model.types = one.types;
-  options.scene.features = one.features;
-  options.scene.clutter_share = one.clutter;
-  options.scene.links = one.links;
-  options.scene.directions = one.directions;
-  options.scene.edges = one.edges;
-  return options;
 }
 
 json recognition_rows(const Settings& settings) {
@@ -147,46 +98,6 @@ json recognition_rows(const Settings& settings) {
   return rows;
 }
 
-// Fits the weights on scenes of their own seeds, and says how the confidence stands on others.
-json calibrate(const Settings& settings) {
-  std::vector<Outcome> fit;
-  std::uint64_t seed = 1;
-  for (const Case& one : kCases) {
-    if (one.features > 100) continue;
-    for (const Outcome& o : run_recognition(options_of(one, settings, seed++))) {
-      if (o.told) fit.push_back(o);
-    }
-  }
-  Eigen::MatrixXd terms(static_cast<Eigen::Index>(fit.size()),
-                        static_cast<Eigen::Index>(kConfidenceTerms));
-  Eigen::VectorXd right(static_cast<Eigen::Index>(fit.size()));
-  for (std::size_t i = 0; i < fit.size(); ++i) {
-    const auto row = confidence_terms(fit[i].evidence);
-    for (std::size_t k = 0; k < kConfidenceTerms; ++k)
-      terms(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = row[k];
-    right(static_cast<Eigen::Index>(i)) = fit[i].right ? 1.0 : 0.0;
-  }
-  const Eigen::VectorXd weights = fit_logistic(terms, right, {.ridge = 1.0});
-  json result{{"rows", fit.size()},
-              {"right", right.sum()},
-              {"weights", std::vector<double>(weights.data(), weights.data() + weights.size())}};
-  std::printf("%zu hypotheses, %.0f right; weights", fit.size(), right.sum());
-  for (const double w : weights) std::printf(" %.4f,", w);
-  std::printf("\n");
-  const Eigen::VectorXd confidence = predict(terms, weights);
-  for (int bin = 0; bin < 10; ++bin) {
-    double n = 0.0, hits = 0.0, sum = 0.0;
-    for (Eigen::Index i = 0; i < confidence.size(); ++i) {
-      if (std::min(9, static_cast<int>(confidence(i) * 10.0)) != bin) continue;
-      n += 1.0;
-      hits += right(i);
-      sum += confidence(i);
-    }
-    if (n > 0.0) std::printf("confidence %.2f: %4.0f answers, right %.2f\n", sum / n, n, hits / n);
-  }
-  return result;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -202,11 +113,16 @@ int main(int argc, char** argv) {
       "--cpu-time", settings.cpu_time, "times of `recognition` are the thread's, not the clock's");
   app.add_option("--json", settings.json_file, "write the figures to FILE");
   app.add_subcommand("recognition", "right, accepted and wrong answers by what is in the image");
-  app.add_subcommand("calibrate", "fit the weights of the confidence");
+  app.add_option("--pictures", settings.pictures, "rendered pictures")->capture_default_str();
+  app.add_option("--picture-models", settings.picture_models, "models in the pictures' catalogue")
+      ->capture_default_str();
+  app.add_subcommand("calibrate", "fit the weights of the confidence, and what edges say");
+  app.add_subcommand("reliability", "the confidence of rendered pictures, and how many are right");
   return cli::run_main(argc, argv, app, [&] {
     json result;
     if (app.got_subcommand("recognition")) result["recognition"] = recognition_rows(settings);
     if (app.got_subcommand("calibrate")) result["calibration"] = calibrate(settings);
+    if (app.got_subcommand("reliability")) result["reliability"] = reliability(settings);
     if (!settings.json_file.empty()) {
       std::ofstream file(settings.json_file);
       file << result.dump(1) << "\n";

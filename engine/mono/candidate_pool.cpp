@@ -17,6 +17,11 @@ constexpr double kSameDistance = 0.05;   // of the depth
 
 }  // namespace
 
+bool is_beyond_doubt(double log10_nfa, double edge_share) {
+  return (log10_nfa < kBeyondDoubtWithEdges && edge_share > kBeyondDoubtShare) ||
+         (log10_nfa < kBeyondDoubtHidden && edge_share > kBeyondDoubtHiddenShare);
+}
+
 bool CandidatePool::is_known(std::uint32_t model, const RigidPose& pose) const {
   for (const MonoCandidate& known : candidates_) {
     if (known.model == model && same_but_for_symmetry(models_[model],
@@ -31,8 +36,7 @@ bool CandidatePool::is_known(std::uint32_t model, const RigidPose& pose) const {
 }
 
 void CandidatePool::judge(const MonoCandidate& candidate) {
-  const bool sure = check_.has_edges() ? candidate.rank() < kBeyondDoubtWithEdges &&
-                                             candidate.edge_share > kBeyondDoubtShare
+  const bool sure = check_.has_edges() ? is_beyond_doubt(candidate.rank(), candidate.edge_share)
                                        : candidate.log10_nfa < kBeyondDoubt;
   beyond_doubt_ = beyond_doubt_ || sure;
 }

@@ -6,11 +6,13 @@
 namespace landmarkdb {
 namespace {
 
-// Fitted by `landmarkdb-bench-mono calibrate`, but for the constant: two lower than the fit, as a
-// wrong answer costs more than a declined one. of the visible points, matches, rms, edge share
-// where edges are known, and that they are known.
-constexpr std::array<double, kConfidenceTerms> kWeights{
-    -1.856, 0.955, 0.366, 1.696, 0.358, -2.674, 0.675, -1.519};
+// Fitted by `landmarkdb-bench-mono calibrate`: the constant, false alarms, margin, matches of the
+// visible points, matches, rms, edge share. By points alone the constant is two lower than the fit,
+// as a wrong answer costs more than a declined one.
+constexpr std::array<double, kConfidenceTerms> kByPoints{
+    -1.856, 0.955, 0.366, 1.696, 0.358, -2.674, 0.0};
+constexpr std::array<double, kConfidenceTerms> kWithEdges{
+    -4.561, 0.469, 0.631, 0.044, 0.285, -0.896, 1.193};
 
 }  // namespace
 
@@ -24,22 +26,14 @@ std::array<double, kConfidenceTerms> confidence_terms(const RecognitionEvidence&
           e.visible > 0.0 ? e.matched / e.visible : 0.0,
           std::min(e.matched, kMostMatches) / kMostMatches,
           std::min(e.rms_px, kMostRms_px),
-          e.has_edges ? e.edge_share : 0.0,
-          e.has_edges ? 1.0 : 0.0};
+          e.has_edges ? e.edge_share : 0.0};
 }
 
 double recognition_confidence(const RecognitionEvidence& evidence) {
   const std::array<double, kConfidenceTerms> terms = confidence_terms(evidence);
+  const std::array<double, kConfidenceTerms>& weights = evidence.has_edges ? kWithEdges : kByPoints;
   double log_odds = 0.0;
-  for (std::size_t i = 0; i < terms.size(); ++i) log_odds += kWeights[i] * terms[i];
-  // Corners of real things stand in rows and rectangles and fall into place more often than strewn
-  // points do, but the edges between them do not: no answer is surer than its edges, short of
-  // overwhelming evidence. On real pictures wrong poses had shares up to 0.75, right ones from
-  // 0.80.
-  constexpr double kEvenShare = 0.78, kSteepness = 25.0, kOverwhelming = -30.0;
-  if (evidence.has_edges && evidence.log10_nfa > kOverwhelming) {
-    log_odds = std::min(log_odds, kSteepness * (evidence.edge_share - kEvenShare));
-  }
+  for (std::size_t i = 0; i < terms.size(); ++i) log_odds += weights[i] * terms[i];
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 

@@ -16,13 +16,15 @@ struct RecognitionEvidence {
   double margin = 0.0;  // in log10 of the number of false alarms
 };
 
-// The terms whose weighted sum is the log odds of being right; the first is 1.
-inline constexpr std::size_t kConfidenceTerms = 8;
+// The terms whose weighted sum is the log odds of being right; the first is 1, the last 0 where the
+// image's edges are not known.
+inline constexpr std::size_t kConfidenceTerms = 7;
 std::array<double, kConfidenceTerms> confidence_terms(const RecognitionEvidence& evidence);
 
 // The share of answers with this evidence that are right: a logistic function of the terms, with
-// the weights that `landmarkdb-bench-mono calibrate` fits to generated scenes with and without a
-// known object (docs/decisions/0012-monocular-confidence.md).
+// weights of its own where edges are known. `landmarkdb-bench-mono calibrate` fits them, to
+// rendered pictures and generated scenes with and without a known object
+// (docs/decisions/0012-monocular-confidence.md).
 double recognition_confidence(const RecognitionEvidence& evidence);
 
 }  // namespace landmarkdb

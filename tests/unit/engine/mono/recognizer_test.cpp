@@ -312,5 +312,35 @@ TEST(Recognizer, IsNotOffByARowOnAGridOfDots) {
   EXPECT_GE(found, 10);
 }
 
+// A square grid looks the same from behind, but for its points' names: it is told as seen from the
+// side where its z runs away from the camera, whichever side the image is of.
+TEST(Recognizer, TakesAFlatPatternToLieWithZAwayFromTheCamera) {
+  auto record = std::make_shared<MonoModelRecord>(*dots());
+  std::vector<Eigen::Matrix4d> turns;  // without those that show the back
+  for (const Eigen::Matrix4d& S : record->model.symmetries)
+    if (S(2, 2) > 0.0) turns.push_back(S);
+  record->model.symmetries = turns;
+  record->model.symmetry_class = "c4";
+  auto one = std::make_shared<MonoCatalog>();
+  one->entries.push_back({1, record, {}});
+  const Recognizer grid(one);
+  const SearchModel search = prepare_model(record);
+  for (const double side : {0.0, std::numbers::pi}) {
+    RigidPose truth;
+    truth.R = rotation_from_vector({0.4, 0.3, 0.1}) * rotation_from_vector({side, 0, 0});
+    truth.t = Eigen::Vector3d(0, 0, 0.5) - truth.R * search.center;
+    MonoScene scene = make_mono_scene(nullptr, {.seed = 5, .features = 10, .links = false});
+    for (const PosePoint& point : search.points) {
+      ImageFeature feature;
+      feature.type = FeatureType::kConicCentre;
+      feature.uv = distort(scene.camera, seen_ray(point, truth).ray);
+      scene.features.points.push_back(feature);
+    }
+    const RecognizeResult result = grid.recognize(scene.features, scene.camera, {}, {});
+    ASSERT_EQ(result.status, RecognizeStatus::kRecognized) << side;
+    EXPECT_GT(result.hypotheses[0].T_camera_object.linear()(2, 2), 0.5) << side;
+  }
+}
+
 }  // namespace
 }  // namespace landmarkdb
