@@ -11,6 +11,11 @@ std::size_t Level::entry_of_row(std::size_t row) const {
 
 Level make_level(std::span<const Entry> entries, std::span<const std::size_t> chosen) {
   Level level{.options = {}, .entries = {}, .first_row = {0}, .values = {}, .index = {}};
+  std::size_t numbers = 0;
+  for (const std::size_t entry : chosen) {
+    numbers += entries[entry].record().descriptors.values.size();
+  }
+  level.values.reserve(numbers);  // gigabytes for a thousand places: grown, it would hold two
   for (const std::size_t entry : chosen) {
     level.options = entries[entry].record().options;
     const std::vector<float>& values = entries[entry].record().descriptors.values;

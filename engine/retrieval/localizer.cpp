@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/base/error.hpp"
+#include "engine/base/parallel.hpp"
 #include "engine/cloud/resolution.hpp"
 #include "engine/retrieval/agreement.hpp"
 #include "engine/retrieval/contrast.hpp"
@@ -154,17 +156,32 @@ void fill_hypotheses(const SearchInput& input,
   }
 }
 
+// Side by side, and a few at a time, so that progress is told between them.
+std::vector<Entry> make_entries(const Catalog& catalog, const RunContext& context) {
+  constexpr std::size_t kAtATime = 16;  // for each thread: a large place holds up few others
+  const std::size_t total = catalog.entries.size();
+  const std::size_t step = kAtATime * static_cast<std::size_t>(std::max(context.threads, 1));
+  std::vector<Entry> entries;
+  entries.reserve(total);
+  for (std::size_t first = 0; first < total; first += step) {
+    context.report("index", first, total);
+    std::vector<std::optional<Entry>> made(std::min(step, total - first));
+    parallel_chunks(made.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        made[i] = make_entry(catalog.entries[first + i], context);
+      }
+    });
+    for (std::optional<Entry>& entry : made) entries.push_back(*std::move(entry));
+  }
+  return entries;
+}
+
 }  // namespace
 
 Localizer::Localizer(std::shared_ptr<const Catalog> catalog, const RunContext& context) {
   auto state = std::make_unique<State>();
   state->catalog = std::move(catalog);
-  const std::size_t total = state->catalog->entries.size();
-  state->entries.reserve(total);
-  for (std::size_t i = 0; i < total; ++i) {
-    context.report("index", i, total);
-    state->entries.push_back(make_entry(state->catalog->entries[i], context));
-  }
+  state->entries = make_entries(*state->catalog, context);
   state->levels = make_levels(state->entries, context);
   state_ = std::move(state);
 }
