@@ -29,9 +29,14 @@ std::vector<float> fits_of(const QueryView& view,
   return fits;
 }
 
-constexpr double kClose = 0.4;  // of the tolerance: a third of a voxel tells a slide of one voxel
-
-double mean_of(const std::vector<float>& fits) {
+// How closely the points of the view that proposed the pose lie on its entry's surface, 0..1.
+double closeness_of(const SearchInput& input, const SearchResult& result, const Assessed& pose) {
+  constexpr double kClose = 0.4;  // of the tolerance: a third of a voxel tells a slide of one voxel
+  const Entry& entry = input.entries[pose.entry];
+  const std::vector<float> fits = fits_of(*result.matches[pose.matches].view,
+                                          entry,
+                                          pose.T_entry_sensor,
+                                          kClose * common_tolerance_m(input, entry));
   double sum = 0.0;
   for (const float fit : fits) sum += static_cast<double>(fit);
   return fits.empty() ? 0.0 : sum / static_cast<double>(fits.size());
@@ -69,13 +74,16 @@ void contrast_poses(const SearchInput& input, SearchResult& result) {
         input.context.check("verify");
         const Assessed& pose = poses[places[k]];
         const Entry& entry = input.entries[pose.entry];
-        const double tolerance_m = common_tolerance_m(input, entry);
-        of_poses[k] = fits_of(*view, entry, pose.T_entry_sensor, tolerance_m);
-        poses[places[k]].closeness =
-            mean_of(fits_of(*view, entry, pose.T_entry_sensor, kClose * tolerance_m));
+        of_poses[k] = fits_of(*view, entry, pose.T_entry_sensor, common_tolerance_m(input, entry));
       }
     });
   }
+  parallel_chunks(places.size(), input.context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      input.context.check("verify");
+      poses[places[k]].closeness = closeness_of(input, result, poses[places[k]]);
+    }
+  });
   for (std::size_t a = 0; a < places.size(); ++a) {
     Assessed& pose = poses[places[a]];
     const auto& of_poses = fits.at(result.matches[pose.matches].view);

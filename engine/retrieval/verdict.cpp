@@ -178,7 +178,8 @@ Verdict judge(std::vector<Assessed> assessed,
     return verdict;
   }
   const Standing best = judge_among(0, poses, entries);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
+  verdict.judged.push_back(best.judged);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
     verdict.judged.push_back(judge_among(i, poses, entries).judged);
   }
   const double alone = confidence_alone(poses[0].evidence, poses[0].score);
