@@ -24,23 +24,12 @@ constexpr double kShortest = 0.25, kLongest = 0.8;  // of AB, in model diameters
 constexpr std::size_t kLinks = 2;                   // edges among the four points
 constexpr std::size_t kMostSubsets = 20000;         // of four points of a model that are looked at
 
-using Subset = std::array<std::uint16_t, 4>;
 using Image = std::vector<Eigen::Vector2d>;  // a view: where each point lies, metres
 
-std::uint64_t hash_of(const Subset& s) {
+std::uint64_t hash_of(const PointFour& s) {
   return Random((std::uint64_t{s[0]} << 48U) ^ (std::uint64_t{s[1]} << 32U) ^
                 (std::uint64_t{s[2]} << 16U) ^ s[3])
       .next();
-}
-
-void add_subset(
-    std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d, std::vector<Subset>& all) {
-  Subset s{static_cast<std::uint16_t>(a),
-           static_cast<std::uint16_t>(b),
-           static_cast<std::uint16_t>(c),
-           static_cast<std::uint16_t>(d)};
-  std::sort(s.begin(), s.end());
-  if (std::adjacent_find(s.begin(), s.end()) == s.end()) all.push_back(s);
 }
 
 // Which pairs of points an edge joins.
@@ -57,29 +46,29 @@ class Links {
   std::vector<char> joined_;
 };
 
-std::vector<std::pair<std::uint64_t, Subset>> by_hash(std::vector<Subset> all) {
+std::vector<std::pair<std::uint64_t, PointFour>> by_hash(std::vector<PointFour> all) {
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  std::vector<std::pair<std::uint64_t, Subset>> hashed;
+  std::vector<std::pair<std::uint64_t, PointFour>> hashed;
   hashed.reserve(all.size());
-  for (const Subset& s : all) hashed.emplace_back(hash_of(s), s);
+  for (const PointFour& s : all) hashed.emplace_back(hash_of(s), s);
   return hashed;
 }
 
 // All fours with two edges among them: pairs of edges, and a fourth point where these share one.
-std::vector<Subset> linked_subsets(const MonoModel& model) {
-  std::vector<Subset> all;
+std::vector<PointFour> linked_subsets(const MonoModel& model) {
+  std::vector<PointFour> all;
   for (std::size_t i = 0; i < model.edges.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const auto& [a, b] = model.edges[i];
       const auto& [c, d] = model.edges[j];
       const bool meet = a == c || a == d || b == c || b == d;
       if (!meet) {
-        add_subset(a, b, c, d, all);
+        add_four(a, b, c, d, all);
         continue;
       }
       const std::uint32_t other = c == a || c == b ? d : c;
-      for (std::uint32_t p = 0; p < model.points.size(); ++p) add_subset(a, b, other, p, all);
+      for (std::uint32_t p = 0; p < model.points.size(); ++p) add_four(a, b, other, p, all);
     }
   }
   return all;
@@ -87,9 +76,9 @@ std::vector<Subset> linked_subsets(const MonoModel& model) {
 
 // Without edges: each pair with the nine points that lie nearest to its middle within its circle,
 // as the image's side looks at them; of these as many as a view keeps, by hash.
-std::vector<std::pair<std::uint64_t, Subset>> free_subsets(std::span<const std::uint16_t> seen,
-                                                           const Image& at) {
-  std::vector<Subset> all;
+std::vector<std::pair<std::uint64_t, PointFour>> free_subsets(std::span<const std::uint16_t> seen,
+                                                              const Image& at) {
+  std::vector<PointFour> all;
   std::vector<std::pair<double, std::uint16_t>> inside;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -106,12 +95,12 @@ std::vector<std::pair<std::uint64_t, Subset>> free_subsets(std::span<const std::
           inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(kept), inside.end());
       for (std::size_t c = 0; c < kept; ++c) {
         for (std::size_t d = 0; d < c; ++d) {
-          add_subset(seen[i], seen[j], inside[c].second, inside[d].second, all);
+          add_four(seen[i], seen[j], inside[c].second, inside[d].second, all);
         }
       }
     }
   }
-  std::vector<std::pair<std::uint64_t, Subset>> hashed = by_hash(std::move(all));
+  std::vector<std::pair<std::uint64_t, PointFour>> hashed = by_hash(std::move(all));
   const std::size_t most = std::min(hashed.size(), 4 * kQuadsAView);  // some are cramped or short
   std::partial_sort(
       hashed.begin(), hashed.begin() + static_cast<std::ptrdiff_t>(most), hashed.end());
@@ -158,7 +147,7 @@ class Chooser {
   }
 
   std::vector<ChosenQuad> unlinked() const {
-    std::map<std::pair<std::uint64_t, Subset>, ViewMask> chosen;
+    std::map<std::pair<std::uint64_t, PointFour>, ViewMask> chosen;
     std::vector<std::uint16_t> ids;
     for (std::size_t view = 0; view < kModelViews; ++view) {
       ids.clear();
@@ -179,7 +168,7 @@ class Chooser {
   }
 
  private:
-  bool is_good(std::size_t view, const Subset& s) const {
+  bool is_good(std::size_t view, const PointFour& s) const {
     const Image& at = images_[view];
     QuadCode code;
     if (!code_quad({at[s[0]], at[s[1]], at[s[2]], at[s[3]]}, code)) return false;

@@ -12,9 +12,7 @@ namespace {
 
 constexpr double kShortest_px = 12.0;  // of AB: below, a pixel of noise is all the code there is
 
-using Four = std::array<std::uint16_t, 4>;
-
-void add_quad(const ImageView& image, const Four& four, ImageQuads& result) {
+void add_quad(const ImageView& image, const PointFour& four, ImageQuads& result) {
   QuadCode code;
   if (!code_quad({image[four[0]].xy, image[four[1]].xy, image[four[2]].xy, image[four[3]].xy},
                  code)) {
@@ -33,20 +31,10 @@ void add_quad(const ImageView& image, const Four& four, ImageQuads& result) {
   result.quads.push_back(quad);
 }
 
-void add_four(
-    std::size_t a, std::size_t b, std::size_t c, std::size_t d, std::vector<Four>& fours) {
-  Four four{static_cast<std::uint16_t>(a),
-            static_cast<std::uint16_t>(b),
-            static_cast<std::uint16_t>(c),
-            static_cast<std::uint16_t>(d)};
-  std::sort(four.begin(), four.end());
-  if (std::adjacent_find(four.begin(), four.end()) == four.end()) fours.push_back(four);
-}
-
-void add_quads(const ImageView& image, std::vector<Four>& fours, ImageQuads& result) {
+void add_quads(const ImageView& image, std::vector<PointFour>& fours, ImageQuads& result) {
   std::sort(fours.begin(), fours.end());
   fours.erase(std::unique(fours.begin(), fours.end()), fours.end());
-  for (const Four& four : fours) add_quad(image, four, result);
+  for (const PointFour& four : fours) add_quad(image, four, result);
 }
 
 // Passes on each of `total` things with the same chance, so that some `most` of them remain.
@@ -77,7 +65,7 @@ ImageQuads chained_quads(const ImageView& image, std::size_t most) {
   }
   Sample sample(total, most);
   result.cut_short = sample.thins();
-  std::vector<Four> fours;
+  std::vector<PointFour> fours;
   for (std::size_t b = 0; b < image.size(); ++b) {
     const std::vector<std::uint16_t>& around = image[b].links;
     for (std::size_t i = 0; i < around.size(); ++i) {
@@ -113,7 +101,7 @@ ImageQuads linked_quads(const ImageView& image, std::size_t most) {
   const double n = static_cast<double>(image.size()), m = static_cast<double>(links.size());
   Sample sample(meeting * n + 0.5 * m * m, most);
   result.cut_short = sample.thins();
-  std::vector<Four> fours;
+  std::vector<PointFour> fours;
   for (std::size_t i = 0; i < image.size(); ++i) {
     const std::vector<std::uint16_t>& around = image[i].links;
     for (std::size_t a = 0; a < around.size(); ++a) {
@@ -129,7 +117,7 @@ ImageQuads linked_quads(const ImageView& image, std::size_t most) {
       if (sample.pass()) add_four(links[a][0], links[a][1], links[b][0], links[b][1], fours);
     }
   }
-  std::erase_if(fours, [&](const Four& four) {
+  std::erase_if(fours, [&](const PointFour& four) {
     const auto linked = [&](std::uint16_t a, std::uint16_t b) { return image.linked(a, b); };
     return std::popcount(link_mask(four, linked)) > 2;
   });

@@ -1,12 +1,28 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <Eigen/Core>
 
 namespace landmarkdb {
+
+// The numbers of four points, ascending.
+using PointFour = std::array<std::uint16_t, 4>;
+
+// Appends the four of these points, unless two of them are one.
+inline void add_four(
+    std::size_t a, std::size_t b, std::size_t c, std::size_t d, std::vector<PointFour>& fours) {
+  PointFour four{static_cast<std::uint16_t>(a),
+                 static_cast<std::uint16_t>(b),
+                 static_cast<std::uint16_t>(c),
+                 static_cast<std::uint16_t>(d)};
+  std::sort(four.begin(), four.end());
+  if (std::adjacent_find(four.begin(), four.end()) == four.end()) fours.push_back(four);
+}
 
 // Which of the six pairs of four points `linked(a, b)` joins: AB, AC, AD, BC, BD, CD, AB lowest.
 template <typename Ids, typename Linked>
