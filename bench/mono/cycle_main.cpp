@@ -33,17 +33,6 @@ struct Shot {
   GreyImage image;
 };
 
-Camera make_camera() {
-  Camera camera;
-  camera.width = 640;
-  camera.height = 480;
-  camera.fx = camera.fy = 600.0;
-  camera.cx = 319.5;
-  camera.cy = 239.5;
-  camera.dist[0] = -0.25;
-  return camera;
-}
-
 // The arm wanders about its goal, some 5 px a cycle.
 std::vector<Shot> take_shots(const MonoModel& model,
                              const ServoOptions& servo,
@@ -62,7 +51,7 @@ std::vector<Shot> take_shots(const MonoModel& model,
     }
     shot.T_camera_object = camera_pose(servo.arm, shot.q).inverse() * T_base_object;
     shot.image = datasets::render_model(model,
-                                        make_camera(),
+                                        testing::arm_camera(),
                                         shot.T_camera_object,
                                         {.noise = 2.0, .clutter = clutter, .samples = 3});
     shots.push_back(std::move(shot));
@@ -124,7 +113,7 @@ void run(int images, std::size_t models, int clutter, bool cpu_time) {
   const auto catalog = testing::make_mono_catalog({.seed = 10000, .types = 1}, models);
   const auto record = catalog->entries.front().record;
   const Recognizer recognizer(catalog);
-  const Camera camera = make_camera();
+  const Camera camera = testing::arm_camera();
   ServoOptions servo;
   servo.arm = testing::puma_560(3.0);
   servo.T_camera_object.translation() = Eigen::Vector3d(0.0, 0.0, 0.6);

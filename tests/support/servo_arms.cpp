@@ -61,4 +61,15 @@ Eigen::Isometry3d wanted_pose() {
          Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX());
 }
 
+Camera arm_camera() {
+  Camera camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.fx = camera.fy = 600.0;
+  camera.cx = 319.5;
+  camera.cy = 239.5;
+  camera.dist[0] = -0.25;
+  return camera;
+}
+
 }  // namespace landmarkdb::testing

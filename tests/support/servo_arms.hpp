@@ -1,5 +1,6 @@
 #pragma once
 
+#include "engine/geometry/camera.hpp"
 #include "engine/servo/arm.hpp"
 
 namespace landmarkdb::testing {
@@ -18,5 +19,8 @@ JointVector small_arm_pose();
 
 // What the camera should see: the object 0.6 m in front, its z axis towards the camera.
 Eigen::Isometry3d wanted_pose();
+
+// What it sees with: 640 x 480, f 600, k1 -0.25.
+Camera arm_camera();
 
 }  // namespace landmarkdb::testing

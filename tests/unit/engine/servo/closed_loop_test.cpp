@@ -23,17 +23,6 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 using testing::box_record;
 
-Camera make_camera() {
-  Camera camera;
-  camera.width = 640;
-  camera.height = 480;
-  camera.fx = camera.fy = 600.0;
-  camera.cx = 319.5;
-  camera.cy = 239.5;
-  camera.dist[0] = -0.25;
-  return camera;
-}
-
 // Half a metre in front of the camera, three sides of the box in view.
 Eigen::Isometry3d wanted() {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -52,7 +41,7 @@ Outcome run_loop(const Arm& arm, const JointVector& q_goal, const JointVector& a
   auto catalog = std::make_shared<MonoCatalog>();
   catalog->entries.push_back({.model_id = 1, .record = box_record()});
   const Recognizer recognizer(catalog);
-  const Camera camera = make_camera();
+  const Camera camera = testing::arm_camera();
   Tracker tracker(box_record(), camera, {}, &recognizer);
   ServoOptions options;
   options.arm = arm;
