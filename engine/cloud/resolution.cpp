@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/error.hpp"
@@ -15,10 +16,10 @@ namespace landmarkdb {
 namespace {
 
 constexpr std::size_t kFewestPoints = 4;
-constexpr std::size_t kLooked = 200'000;  // points the extent is taken from
-constexpr std::size_t kSamples = 1000;    // pieces of surface the spacing is taken from
-constexpr std::size_t kIndexWhole =
-    200'000;                            // above, distances come from the cells around a sample
+constexpr std::size_t kLooked = 50'000;  // points the extent is taken from
+constexpr std::size_t kSamples = 400;    // pieces of surface the spacing is taken from
+// Above, distances come from the cells around a sample even where these are too small.
+constexpr std::size_t kIndexWhole = 200'000;
 constexpr double kCellsAcross = 64.0;   // a piece of surface is a cell of this part of the extent
 constexpr std::size_t kNeighbour = 16;  // see surface_spacing
 
@@ -69,36 +70,67 @@ void distances_around(const std::vector<Eigen::Vector3f>& points,
   }
 }
 
+// One point of each of some cells, all over the surface.
+std::vector<const VoxelCell*> sample_cells(const VoxelCells& grid) {
+  const std::size_t step = (grid.cells.size() + kSamples - 1) / kSamples;
+  std::vector<const VoxelCell*> cells;
+  for (std::size_t c = 0; c < grid.cells.size(); c += step) cells.push_back(&grid.cells[c]);
+  return cells;
+}
+
+std::uint32_t middle_point(const VoxelCells& grid, const VoxelCell& cell) {
+  return grid.order[cell.begin + (cell.end - cell.begin) / 2];
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The median distance of the samples to their k-th neighbour, exact below `cell_m`: what is nearer
+// lies in the cells around. Of those that have fewer there the cell's size is all that is known.
+double near_distance(const std::vector<Eigen::Vector3f>& points,
+                     const VoxelCells& grid,
+                     double cell_m,
+                     std::size_t k) {
+  std::vector<double> distances;
+  std::vector<float> squared;
+  for (const VoxelCell* cell : sample_cells(grid)) {
+    distances_around(points, grid, *cell, middle_point(grid, *cell), squared);
+    double distance_m = cell_m;
+    if (squared.size() >= k) {
+      const auto kth = squared.begin() + static_cast<std::ptrdiff_t>(k - 1);
+      std::nth_element(squared.begin(), kth, squared.end());
+      distance_m = std::sqrt(static_cast<double>(*kth));
+    }
+    distances.push_back(distance_m);
+  }
+  return median(std::move(distances));
+}
+
+double far_distance(const std::vector<Eigen::Vector3f>& points,
+                    const VoxelCells& grid,
+                    std::size_t k) {
+  const SpatialIndex index(points);
+  std::vector<double> distances;
+  std::vector<Neighbour> neighbours;
+  for (const VoxelCell* cell : sample_cells(grid)) {
+    index.nearest(points[middle_point(grid, *cell)], k + 1, neighbours);
+    distances.push_back(std::sqrt(static_cast<double>(neighbours.back().squared_distance_m2)));
+  }
+  return median(std::move(distances));
+}
+
 double sample_spacing(const std::vector<Eigen::Vector3f>& points,
                       const VoxelCells& grid,
                       double cell_m) {
-  const std::size_t step = (grid.cells.size() + kSamples - 1) / kSamples;
   const std::size_t k = std::min(kNeighbour, points.size() - 1);
-  std::optional<SpatialIndex> index;
-  if (points.size() <= kIndexWhole) index.emplace(points);
-  std::vector<double> spacings;
-  std::vector<Neighbour> neighbours;
-  std::vector<float> squared;
-  for (std::size_t c = 0; c < grid.cells.size(); c += step) {
-    const VoxelCell& cell = grid.cells[c];
-    const std::uint32_t i = grid.order[cell.begin + (cell.end - cell.begin) / 2];
-    double distance_m = cell_m;  // fewer than k around: the cell's size is all that is known
-    if (index) {
-      index->nearest(points[i], k + 1, neighbours);
-      distance_m = std::sqrt(static_cast<double>(neighbours.back().squared_distance_m2));
-    } else {
-      distances_around(points, grid, cell, i, squared);
-      if (squared.size() >= k) {
-        const auto kth = squared.begin() + static_cast<std::ptrdiff_t>(k - 1);
-        std::nth_element(squared.begin(), kth, squared.end());
-        distance_m = std::sqrt(static_cast<double>(*kth));
-      }
-    }
-    spacings.push_back(surface_spacing(distance_m, k));
+  double distance_m = near_distance(points, grid, cell_m, k);
+  if (distance_m >= cell_m && points.size() <= kIndexWhole) {
+    distance_m = far_distance(points, grid, k);
   }
-  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
-  std::nth_element(spacings.begin(), middle, spacings.end());
-  return *middle;
+  return surface_spacing(distance_m, k);
 }
 
 }  // namespace

@@ -89,6 +89,24 @@ CellGrid::CellGrid(std::span<const Eigen::Vector3f> points, double cell_m) : cel
     z_.push_back(points[index].z());
   }
   start_.push_back(static_cast<std::uint32_t>(order_.size()));
+  index_columns();
+}
+
+void CellGrid::index_columns() {
+  constexpr std::int64_t kColumnsAPoint = 4;
+  constexpr std::int64_t kAlways = 1 << 16;
+  const std::int64_t along_y = last_[1] + 1;
+  const std::int64_t columns = (last_[0] + 1) * along_y;  // at most 2^42
+  if (columns > std::max(kAlways, kColumnsAPoint * static_cast<std::int64_t>(order_.size()))) {
+    return;
+  }
+  columns_.reserve(static_cast<std::size_t>(columns) + 1);
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    const auto [x, y, z] = unpack_cell(keys_[i]);
+    const auto column = static_cast<std::size_t>(x * along_y + y);
+    while (columns_.size() <= column) columns_.push_back(static_cast<std::uint32_t>(i));
+  }
+  columns_.resize(static_cast<std::size_t>(columns) + 1, static_cast<std::uint32_t>(keys_.size()));
 }
 
 std::array<std::int64_t, 3> CellGrid::cell_of(const Eigen::Vector3d& p) const {
@@ -102,9 +120,24 @@ std::array<std::int64_t, 3> CellGrid::cell_of(const Eigen::Vector3d& p) const {
   return cell;
 }
 
-std::uint32_t CellGrid::first_place(std::uint64_t key) const {
-  const auto it = std::lower_bound(keys_.begin(), keys_.end(), key);
-  return start_[static_cast<std::size_t>(it - keys_.begin())];
+CellGrid::Run CellGrid::column_run(std::int64_t cx,
+                                   std::int64_t cy,
+                                   std::int64_t cz_low,
+                                   std::int64_t cz_high) const {
+  if (cz_low > cz_high) return {};
+  auto first = keys_.begin();
+  auto last = keys_.end();
+  if (!columns_.empty()) {
+    const auto column = static_cast<std::size_t>(cx * (last_[1] + 1) + cy);
+    last = first + columns_[column + 1];
+    first += columns_[column];
+  }
+  first = std::lower_bound(first, last, pack_cell(cx, cy, cz_low));
+  const std::uint64_t end = pack_cell(cx, cy, cz_high);
+  const auto after = columns_.empty() ? std::upper_bound(first, last, end)
+                                      : std::find_if(first, last, [&](auto k) { return k > end; });
+  return {start_[static_cast<std::size_t>(first - keys_.begin())],
+          start_[static_cast<std::size_t>(after - keys_.begin())]};
 }
 
 void CellGrid::runs(const Eigen::Vector3f& query, float radius_m, std::vector<Run>& out) const {
@@ -112,17 +145,31 @@ void CellGrid::runs(const Eigen::Vector3f& query, float radius_m, std::vector<Ru
   if (order_.empty()) return;
   const double reach = static_cast<double>(radius_m) * (1.0 + kRimMargin);
   const Eigen::Vector3d centre = query.cast<double>();
-  std::array<std::int64_t, 3> low = cell_of(centre - Eigen::Vector3d::Constant(reach));
-  std::array<std::int64_t, 3> high = cell_of(centre + Eigen::Vector3d::Constant(reach));
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (low[axis] > last_[axis] || high[axis] < 0) return;
-    low[axis] = std::max<std::int64_t>(low[axis], 0);
-    high[axis] = std::min(high[axis], last_[axis]);
-  }
-  for (std::int64_t cx = low[0]; cx <= high[0]; ++cx) {
-    for (std::int64_t cy = low[1]; cy <= high[1]; ++cy) {
-      const Run run{first_place(pack_cell(cx, cy, low[2])),
-                    first_place(pack_cell(cx, cy, high[2]) + 1)};
+  const std::array<std::int64_t, 3> low = cell_of(centre - Eigen::Vector3d::Constant(reach));
+  const std::array<std::int64_t, 3> high = cell_of(centre + Eigen::Vector3d::Constant(reach));
+  const auto first = [&](std::size_t axis) { return std::max<std::int64_t>(low[axis], 0); };
+  const auto last = [&](std::size_t axis) { return std::min(high[axis], last_[axis]); };
+  // From the centre to the nearest of the cells `cell` of this axis.
+  const auto distance = [&](std::size_t axis, std::int64_t cell) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    const double from = min_[i] + static_cast<double>(cell) * cell_m_;
+    return std::max({0.0, from - centre[i], centre[i] - (from + cell_m_)});
+  };
+  const double squared = reach * reach;
+  for (std::int64_t cx = first(0); cx <= last(0); ++cx) {
+    const double dx = distance(0, cx);
+    for (std::int64_t cy = first(1); cy <= last(1); ++cy) {
+      const double dy = distance(1, cy);
+      const double left = squared - dx * dx - dy * dy;
+      if (left < 0.0) continue;
+      const double half = std::sqrt(left);
+      const auto cz = [&](double z) {
+        return static_cast<std::int64_t>(std::floor((z - min_.z()) / cell_m_));
+      };
+      const Run run = column_run(cx,
+                                 cy,
+                                 std::max(cz(centre.z() - half), first(2)),
+                                 std::min(cz(centre.z() + half), last(2)));
       if (run.begin < run.end) out.push_back(run);
     }
   }

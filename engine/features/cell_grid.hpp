@@ -49,7 +49,9 @@ class CellGrid {
 
  private:
   std::array<std::int64_t, 3> cell_of(const Eigen::Vector3d& p) const;
-  std::uint32_t first_place(std::uint64_t key) const;  // of the first cell whose key is not less
+  void index_columns();
+  // The places of the cells cz_low .. cz_high of one column.
+  Run column_run(std::int64_t cx, std::int64_t cy, std::int64_t cz_low, std::int64_t cz_high) const;
 
   Eigen::Vector3d min_ = Eigen::Vector3d::Zero();
   double cell_m_ = 0.0;
@@ -58,6 +60,9 @@ class CellGrid {
   std::vector<float> x_, y_, z_;
   std::vector<std::uint64_t> keys_;   // of the occupied cells, ascending
   std::vector<std::uint32_t> start_;  // first place of each, and the number of points at the end
+  // Index into keys_ of the first cell of each column (x * columns along y + y) and of the end;
+  // empty where the cloud is so wide that most columns would be.
+  std::vector<std::uint32_t> columns_;
 };
 
 // The cell of each point, packed x-y-z into 64 bits, 21 bits an axis, counted from the cloud's

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -15,7 +17,7 @@
 namespace landmarkdb {
 namespace {
 
-constexpr double kCellsPerRadius = 2.0;  // as in describe_shot
+constexpr double kCellsPerRadius = 1.0;  // the radii looked at are up to three times as large
 constexpr std::size_t kBlock = 256;      // points between two looks at the stop request
 constexpr std::size_t kFewestOfBin = 50;
 constexpr double kMostWider = 3.0;  // times the normals' radius: the widest neighbourhood looked at
@@ -71,6 +73,53 @@ struct Bin {
   std::size_t bins = 1;
 };
 
+// Wide enough to hold several of the sheets that a depth camera's quantised disparity leaves of a
+// far wall.
+float noise_radius_m(double radius_m, float range_m) {
+  constexpr float kOfRange = 0.05F;
+  const auto least = static_cast<float>(radius_m);
+  return std::clamp(kOfRange * range_m, least, static_cast<float>(kMostWider) * least);
+}
+
+// Points of each bin of range, spread over all that it has: a quantile of some hundreds is as good
+// as that of thousands.
+std::vector<std::vector<std::uint32_t>> sample_bins(const PreparedCloud& cloud,
+                                                    double first_range_m) {
+  constexpr std::size_t kEnoughOfBin = 250;
+  std::vector<std::vector<std::uint32_t>> bins;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    const std::size_t bin = bin_of(first_range_m, range_of(cloud, i));
+    if (bin >= bins.size()) bins.resize(bin + 1);
+    bins[bin].push_back(i);
+  }
+  for (std::vector<std::uint32_t>& bin : bins) {
+    const std::size_t all = bin.size();
+    const std::size_t kept = std::min(all, kEnoughOfBin);
+    for (std::size_t k = 0; k < kept; ++k) bin[k] = bin[k * all / kept];
+    bin.resize(kept);
+  }
+  return bins;
+}
+
+// How far the neighbourhoods of these points are from planes; those that have none are left out.
+std::vector<float> flatness(const PreparedCloud& cloud,
+                            const CellGrid& grid,
+                            std::span<const std::uint32_t> sample,
+                            double radius_m,
+                            const RunContext& context) {
+  std::vector<float> sigma(sample.size());
+  parallel_chunks(sample.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<CellGrid::Found> found;
+    for (std::size_t k = begin; k < end; ++k) {
+      if ((k - begin) % kBlock == 0) context.check("preprocess");
+      const float radius = noise_radius_m(radius_m, range_of(cloud, sample[k]));
+      sigma[k] = fit_plane(grid, cloud.points[sample[k]], radius, found).sigma_m;
+    }
+  });
+  std::erase_if(sigma, [](float value) { return !std::isfinite(value); });
+  return sigma;
+}
+
 // Noise does not fall with the range: the nearest sequence that never falls (pool adjacent
 // violators: Barlow et al. 1972), each bin weighted by its points.
 std::vector<float> never_falling(const std::vector<Bin>& measured) {
@@ -95,14 +144,6 @@ std::vector<float> never_falling(const std::vector<Bin>& measured) {
   return sigma_m;
 }
 
-// Wide enough to hold several of the sheets that a depth camera's quantised disparity leaves of a
-// far wall.
-float noise_radius_m(double radius_m, float range_m) {
-  constexpr float kOfRange = 0.05F;
-  const auto least = static_cast<float>(radius_m);
-  return std::clamp(kOfRange * range_m, least, static_cast<float>(kMostWider) * least);
-}
-
 }  // namespace
 
 float RangeNoise::at(float range_m) const {
@@ -117,21 +158,9 @@ RangeNoise measure_range_noise(const PreparedCloud& cloud,
   noise.first_range_m = 10.0 * cloud.resolution_m;
   if (cloud.viewpoints.empty()) return noise;
   const CellGrid grid(cloud.points, radius_m / kCellsPerRadius);
-  std::vector<float> sigma(cloud.size());
-  parallel_chunks(cloud.size(), context.threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<CellGrid::Found> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      if ((i - begin) % kBlock == 0) context.check("preprocess");
-      const float radius = noise_radius_m(radius_m, range_of(cloud, i));
-      sigma[i] = fit_plane(grid, cloud.points[i], radius, found).sigma_m;
-    }
-  });
   std::vector<std::vector<float>> bins;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!std::isfinite(sigma[i])) continue;
-    const std::size_t bin = bin_of(noise.first_range_m, range_of(cloud, i));
-    if (bin >= bins.size()) bins.resize(bin + 1);
-    bins[bin].push_back(sigma[i]);
+  for (const std::vector<std::uint32_t>& sample : sample_bins(cloud, noise.first_range_m)) {
+    bins.push_back(flatness(cloud, grid, sample, radius_m, context));
   }
   std::vector<Bin> measured;
   for (std::vector<float>& bin : bins) {

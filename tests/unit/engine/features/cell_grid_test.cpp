@@ -56,6 +56,24 @@ TEST(CellGrid, FindsWhatBruteForceFinds) {
   }
 }
 
+TEST(CellGrid, FindsTheSameInACloudTooWideForATableOfColumns) {
+  std::vector<Eigen::Vector3f> points = random_points(300, 6);
+  const CellGrid near(points, 0.1);
+  points.emplace_back(5000.0F, -4000.0F, 0.0F);  // 10^9 columns
+  const CellGrid wide(points, 0.1);
+  std::vector<CellGrid::Found> found;
+  for (const Eigen::Vector3f& query : points) {
+    std::set<std::uint32_t> expected;
+    near.within(query, 0.4F, found);
+    for (const CellGrid::Found& f : found) expected.insert(near.order()[f.place]);
+    if (query == points.back()) expected.insert(300);
+    std::set<std::uint32_t> indices;
+    wide.within(query, 0.4F, found);
+    for (const CellGrid::Found& f : found) indices.insert(wide.order()[f.place]);
+    EXPECT_EQ(indices, expected);
+  }
+}
+
 TEST(CellGrid, RunsAscendWithoutOverlap) {
   const std::vector<Eigen::Vector3f> points = random_points(500, 2);
   const CellGrid grid(points, 0.3);
