@@ -25,6 +25,7 @@ RangeImage::RangeImage(std::span<const Eigen::Vector3f> points,
     if (complete_share() >= kEnough || step_rad_ >= kCoarsestRad) break;
   }
   measure_cone(points);
+  number_inner();
 }
 
 void RangeImage::measure_cone(std::span<const Eigen::Vector3f> points) {
@@ -42,11 +43,37 @@ void RangeImage::measure_cone(std::span<const Eigen::Vector3f> points) {
   constexpr double kDiagonal = std::numbers::sqrt2;
   const double beyond = kDiagonal * (kWidestPatch + 2) * step_rad_;
   const double half_angle = std::acos(std::clamp(static_cast<double>(least), -1.0, 1.0)) + beyond;
+  cone_half_angle_rad_ = static_cast<float>(std::min(half_angle, std::numbers::pi));
   cone_cosine_ = half_angle < std::numbers::pi ? static_cast<float>(std::cos(half_angle)) : -1.0F;
 }
 
-void RangeImage::measure(std::span<const Eigen::Vector3f> points) {
+void RangeImage::number_inner() {
+  inner_of_cell_.assign(cells_.size(), kOuter);
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    if (!(widened_[cell].furthest > 0.0F)) continue;
+    inner_of_cell_[cell] = static_cast<std::uint32_t>(inner_.size());
+    inner_.push_back(static_cast<std::uint32_t>(cell));
+  }
+}
+
+void RangeImage::divide_faces() {
   side_ = std::max(4, static_cast<int>(std::ceil(0.5 * std::numbers::pi / step_rad_)));
+  cell_begin_.clear();
+  for (int cell = 0; cell <= side_; ++cell) {
+    const double angle = (2.0 * cell / side_ - 1.0) * 0.25 * std::numbers::pi;
+    cell_begin_.push_back(static_cast<float>(std::tan(angle)));
+  }
+  const int steps = 2 * side_;  // a cell's tangents span at least pi / (2 side), a step 1 / side
+  cell_of_step_.clear();
+  for (int step = 0, cell = 0; step < steps; ++step) {
+    const float begin = 2.0F * static_cast<float>(step) / static_cast<float>(steps) - 1.0F;
+    while (cell + 1 < side_ && cell_begin_[static_cast<std::size_t>(cell) + 1] <= begin) ++cell;
+    cell_of_step_.push_back(cell);
+  }
+}
+
+void RangeImage::measure(std::span<const Eigen::Vector3f> points) {
+  divide_faces();
   cells_.assign(6 * static_cast<std::size_t>(side_ * side_), Cell{kInfinity, 0.0F});
   for (const Eigen::Vector3f& point : points) {
     const Eigen::Vector3f ray = point - viewpoint_;
@@ -72,19 +99,25 @@ double RangeImage::complete_share() const {
   return measured == 0 ? 0.0 : static_cast<double>(complete) / static_cast<double>(measured);
 }
 
+int RangeImage::cell_along(float tangent) const {
+  const auto steps = static_cast<float>(cell_of_step_.size());
+  const float step = std::clamp((tangent + 1.0F) * 0.5F * steps, 0.0F, steps - 1.0F);
+  const int cell = cell_of_step_[static_cast<std::size_t>(step)];
+  const bool next = cell + 1 < side_ && tangent >= cell_begin_[static_cast<std::size_t>(cell) + 1];
+  return next ? cell + 1 : cell;
+}
+
 RangeImage::Place RangeImage::place_of(const Eigen::Vector3f& ray) const {
   int axis = 0;
-  ray.cwiseAbs().maxCoeff(&axis);
-  const float depth = std::abs(ray(axis));
-  const auto along = [&](float v) {
-    const float angle =
-        std::atan(v / depth) * (4.0F / std::numbers::pi_v<float>);  // -1..1 over the face
-    return std::clamp(
-        static_cast<int>((angle + 1.0F) * 0.5F * static_cast<float>(side_)), 0, side_ - 1);
-  };
+  const float inverse_depth = 1.0F / ray.cwiseAbs().maxCoeff(&axis);
   return {2 * axis + (ray(axis) < 0.0F ? 1 : 0),
-          along(ray((axis + 1) % 3)),
-          along(ray((axis + 2) % 3))};
+          cell_along(ray((axis + 1) % 3) * inverse_depth),
+          cell_along(ray((axis + 2) % 3) * inverse_depth)};
+}
+
+RangeImage::Place RangeImage::place_at(std::size_t cell) const {
+  const int index = static_cast<int>(cell);
+  return {index / (side_ * side_), (index / side_) % side_, index % side_};
 }
 
 std::size_t RangeImage::index_of(const Place& place) const {
@@ -92,8 +125,7 @@ std::size_t RangeImage::index_of(const Place& place) const {
 }
 
 RangeImage::Cell RangeImage::widen(std::size_t cell) const {
-  const int index = static_cast<int>(cell);
-  const Place place{index / (side_ * side_), (index / side_) % side_, index % side_};
+  const Place place = place_at(cell);
   Cell wide{kInfinity, 0.0F};
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
@@ -119,47 +151,69 @@ SightCounts& SightCounts::operator+=(const SightCounts& other) {
   return *this;
 }
 
+bool RangeImage::in_view(const Eigen::Vector3f& centre, float radius_m) const {
+  const float distance = centre.norm();
+  if (distance <= radius_m) return true;
+  if (distance - radius_m > 2.0F * max_range_m_) return false;  // as in render
+  constexpr float kRounding_rad = 1e-3F;
+  const float reach = cone_half_angle_rad_ + std::asin(radius_m / distance) + kRounding_rad;
+  return reach >= std::numbers::pi_v<float> || cone_axis_.dot(centre) >= std::cos(reach) * distance;
+}
+
 std::vector<RangeImage::Predicted> RangeImage::render(const SightSurface& surface,
                                                       const Eigen::Isometry3d& T_here_surface,
                                                       float patch_m) const {
   const Eigen::Matrix3f R = T_here_surface.linear().cast<float>();
   const Eigen::Vector3f t = T_here_surface.translation().cast<float>() - viewpoint_;
   const float reach = 2.0F * max_range_m_;  // what lies further could only be hidden
-  std::vector<Predicted> predicted(cells_.size(), {kInfinity, false});
-  for (std::size_t i = 0; i < surface.points.size(); ++i) {
-    const Eigen::Vector3f ray = R * surface.points[i] + t;
-    const float range = ray.norm();
-    if (!(range > 0.0F) || range > reach || cone_axis_.dot(ray) < cone_cosine_ * range) continue;
-    const bool back = !surface.normals.empty() && ray.dot(R * surface.normals[i]) > 0.0F;
-    const Place place = place_of(ray);
-    const float half_patch = 0.5F * patch_m / (range * static_cast<float>(step_rad_));
-    const int half =
-        static_cast<int>(std::min(static_cast<float>(kWidestPatch), half_patch + 0.5F));
-    for (int row = std::max(0, place.row - half); row <= std::min(side_ - 1, place.row + half);
-         ++row) {
-      for (int column = std::max(0, place.column - half);
-           column <= std::min(side_ - 1, place.column + half);
-           ++column) {
-        Predicted& nearest = predicted[index_of({place.face, row, column})];
-        if (range < nearest.range) nearest = {range, back};
-      }
+  const float half_patch_cells = 0.5F * patch_m / static_cast<float>(step_rad_);
+  std::vector<Predicted> predicted(inner_.size(), {kInfinity, false});
+  for (const SightSurface::Block& block : surface.blocks()) {
+    if (!in_view(R * block.centre + t, block.radius_m)) continue;
+    for (std::uint32_t i = block.begin; i < block.end; ++i) {
+      const Eigen::Vector3f ray = R * surface.points()[i] + t;
+      const float range = ray.norm();
+      if (!(range > 0.0F) || range > reach || cone_axis_.dot(ray) < cone_cosine_ * range) continue;
+      const bool back = surface.has_normals() && ray.dot(R * surface.normals()[i]) > 0.0F;
+      const Place place = place_of(ray);
+      const int half = static_cast<int>(
+          std::min(static_cast<float>(kWidestPatch), half_patch_cells / range + 0.5F));
+      lay_patch(place, half, {range, back}, predicted);
     }
   }
   return predicted;
 }
 
+void RangeImage::lay_patch(const Place& place,
+                           int half,
+                           const Predicted& patch,
+                           std::vector<Predicted>& predicted) const {
+  const int last_row = std::min(side_ - 1, place.row + half);
+  const int first_column = std::max(0, place.column - half);
+  const int last_column = std::min(side_ - 1, place.column + half);
+  for (int row = std::max(0, place.row - half); row <= last_row; ++row) {
+    const std::size_t begin = index_of({place.face, row, 0});
+    for (int column = first_column; column <= last_column; ++column) {
+      const std::uint32_t inner = inner_of_cell_[begin + static_cast<std::size_t>(column)];
+      if (inner == kOuter) continue;
+      Predicted& nearest = predicted[inner];
+      if (patch.range < nearest.range) nearest = patch;
+    }
+  }
+}
+
 std::size_t RangeImage::solid(const std::vector<signed char>& says) const {
   std::size_t count = 0;
-  for (std::size_t cell = 0; cell < says.size(); ++cell) {
-    if (says[cell] >= 0) continue;
-    const int index = static_cast<int>(cell);
-    const Place place{index / (side_ * side_), (index / side_) % side_, index % side_};
+  for (std::size_t i = 0; i < says.size(); ++i) {
+    if (says[i] >= 0) continue;
+    const Place place = place_at(inner_[i]);
     bool alone = false;
     for (int row = std::max(0, place.row - 1); row <= std::min(side_ - 1, place.row + 1); ++row) {
       for (int column = std::max(0, place.column - 1);
            column <= std::min(side_ - 1, place.column + 1);
            ++column) {
-        alone = alone || says[index_of({place.face, row, column})] > 0;
+        const std::uint32_t beside = inner_of_cell_[index_of({place.face, row, column})];
+        alone = alone || (beside != kOuter && says[beside] > 0);
       }
     }
     count += alone ? 0U : 1U;
@@ -173,12 +227,11 @@ SightCounts RangeImage::compare(const SightSurface& surface,
                                 const SightTolerance& tolerance) const {
   const std::vector<Predicted> predicted = render(surface, T_here_surface, patch_m);
   SightCounts counts;
-  std::vector<signed char> says(cells_.size(), 0);  // 1: agrees, -1: contradicts, 0: nothing
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    const Cell& wide = widened_[i];
-    if (!(wide.furthest > 0.0F)) continue;
-    ++counts.measured;
+  counts.measured = inner_.size();
+  std::vector<signed char> says(inner_.size(), 0);  // 1: agrees, -1: contradicts, 0: nothing
+  for (std::size_t i = 0; i < inner_.size(); ++i) {
     if (predicted[i].range == kInfinity) continue;
+    const Cell& wide = widened_[inner_[i]];
     const bool front = !predicted[i].back;
     const float slack = tolerance.metres + tolerance.share * wide.furthest;
     if (predicted[i].range < wide.nearest - slack) {

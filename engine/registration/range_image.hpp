@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+
+#include "engine/registration/sight_surface.hpp"
 
 namespace landmarkdb {
 
@@ -24,12 +27,6 @@ struct SightCounts {
   std::size_t solid = 0;
 
   SightCounts& operator+=(const SightCounts& other);
-};
-
-// The surface an entry predicts: points, and normals where their side is known (empty otherwise).
-struct SightSurface {
-  std::span<const Eigen::Vector3f> points;
-  std::span<const Eigen::Vector3f> normals{};
 };
 
 // How far before or behind the measured range still counts as seen: fixed, and a share of the
@@ -54,7 +51,7 @@ class RangeImage {
 
   // Renders `surface` (carried into this frame by T_here_surface, each point a patch `patch_m`
   // wide) and compares. Only directions whose eight neighbours were measured too are counted, so
-  // that silhouettes decide nothing. Cost: one projection a point within reach.
+  // that silhouettes decide nothing. Cost: one projection a point of the blocks in view.
   SightCounts compare(const SightSurface& surface,
                       const Eigen::Isometry3d& T_here_surface,
                       float patch_m,
@@ -74,28 +71,50 @@ class RangeImage {
     float range;  // of the nearest surface; infinite: none
     bool back;    // it is seen from behind
   };
+  // Whether anything of a block, its centre seen from the viewpoint, may lie in view.
+  bool in_view(const Eigen::Vector3f& centre, float radius_m) const;
+  // One for each of `inner_`.
   std::vector<Predicted> render(const SightSurface& surface,
                                 const Eigen::Isometry3d& T_here_surface,
                                 float patch_m) const;
+  // Half so many cells to each side of a place, where that is nearer than what was predicted.
+  void lay_patch(const Place& place,
+                 int half,
+                 const Predicted& patch,
+                 std::vector<Predicted>& predicted) const;
   std::size_t solid(const std::vector<signed char>& says) const;
   void measure(std::span<const Eigen::Vector3f> points);
+  void divide_faces();
   double complete_share() const;
+  int cell_along(float tangent) const;
   Place place_of(const Eigen::Vector3f& ray) const;
+  Place place_at(std::size_t cell) const;
   std::size_t index_of(const Place& place) const;
   Cell widen(std::size_t cell) const;
   void measure_cone(std::span<const Eigen::Vector3f> points);
+  void number_inner();
 
   Eigen::Vector3f viewpoint_;
   double step_rad_ = 0.0;
   int side_ = 0;  // cells along an edge of a face
+  // Where a tangent, -1 to 1 along a face, falls: the cell at the start of each of the even steps,
+  // none of which is as wide as a cell, and the tangent at which each cell begins.
+  std::vector<int> cell_of_step_;
+  std::vector<float> cell_begin_;
   float max_range_m_ = 0.0F;
   // Around all directions measured, and as far beyond them as a patch reaches: what a surface
   // shows outside of it is compared with nothing.
   Eigen::Vector3f cone_axis_ = Eigen::Vector3f::UnitZ();
   float cone_cosine_ = -1.0F;
+  float cone_half_angle_rad_ = 0.0F;
   std::vector<Cell> cells_;
-  std::vector<Cell>
-      widened_;  // over the 3 x 3 cells around; furthest = 0 where one of these is unknown
+  // Over the 3 x 3 cells around; furthest = 0 where one of these is unknown.
+  std::vector<Cell> widened_;
+  // Those of the cells that are compared: all around them was measured. And the number among them
+  // of each cell, kOuter where it is none of them.
+  static constexpr std::uint32_t kOuter = ~std::uint32_t{0};
+  std::vector<std::uint32_t> inner_;
+  std::vector<std::uint32_t> inner_of_cell_;
 };
 
 }  // namespace landmarkdb

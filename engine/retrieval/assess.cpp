@@ -136,7 +136,7 @@ Assessed assess_coarse(const Meeting& meeting,
     evidence.explained = evidence.coverage = 1.0;
   } else {
     measure_sight(query.ranges,
-                  {entry.wide_points},
+                  entry.wide_sight,
                   assessed.T_entry_sensor.inverse(),
                   entry.wide.cell_m(),
                   verify,
@@ -171,7 +171,7 @@ void assess_fine(const Meeting& meeting,
   const Vectors normals = meeting.entry_is_source ? Vectors(seen.normals) : meeting.source_normals;
   measure_overlap(meeting.target, points, normals, assessed.icp.T_target_source, verify, evidence);
   measure_sight(query.ranges,
-                {entry.sight_points, entry.sight_normals},
+                entry.sight,
                 assessed.T_entry_sensor.inverse(),
                 entry.record().prepared.resolution_m,
                 verify,

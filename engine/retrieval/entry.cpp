@@ -26,6 +26,16 @@ SurfaceGrid grid_of_scene(const SceneRecord& record, const RunContext& context) 
   }
 }
 
+SightSurface sight_of(const PreparedCloud& cloud) {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+  for (const std::uint32_t i : spread(cloud.size(), kSightPoints)) {
+    points.push_back(cloud.points[i]);
+    if (cloud.normals_from_viewpoint) normals.push_back(cloud.normals[i]);
+  }
+  return SightSurface(points, normals);
+}
+
 }  // namespace
 
 SurfaceGrid make_grid(const PreparedCloud& cloud, const RunContext& context) {
@@ -66,13 +76,14 @@ Entry make_entry(CatalogEntry stored, const RunContext& context) {
   Entry entry{.stored = std::move(stored),
               .grid = grid_of_scene(record, context),
               .wide = is_object ? SurfaceGrid({}, {}, 1.0, 0) : make_wide_grid(cloud),
-              .wide_points = {},
+              .wide_sight = {},
               .test = select_test_points(cloud.points, cloud.normals, {}, kTestPoints, kSeed),
-              .sight_points = {},
-              .sight_normals = {},
+              .sight = sight_of(cloud),
               .centre = Eigen::Vector3d::Zero(),
               .extent_m = 0.0};
-  for (const Surfel& surfel : entry.wide.surfels()) entry.wide_points.push_back(surfel.point);
+  std::vector<Eigen::Vector3f> wide_points;
+  for (const Surfel& surfel : entry.wide.surfels()) wide_points.push_back(surfel.point);
+  entry.wide_sight = SightSurface(wide_points);
   for (const Eigen::Vector3f& point : cloud.points) entry.centre += point.cast<double>();
   const auto points = static_cast<double>(std::max<std::size_t>(cloud.size(), 1));
   entry.centre /= points;
@@ -81,10 +92,6 @@ Entry make_entry(CatalogEntry stored, const RunContext& context) {
     squares += (point.cast<double>() - entry.centre).squaredNorm();
   }
   entry.extent_m = 2.0 * std::sqrt(squares / points);
-  for (const std::uint32_t i : spread(cloud.size(), kSightPoints)) {
-    entry.sight_points.push_back(cloud.points[i]);
-    if (cloud.normals_from_viewpoint) entry.sight_normals.push_back(cloud.normals[i]);
-  }
   return entry;
 }
 

@@ -9,6 +9,7 @@
 
 #include "engine/base/run_context.hpp"
 #include "engine/registration/pose_score.hpp"
+#include "engine/registration/sight_surface.hpp"
 #include "engine/registration/surface_grid.hpp"
 #include "engine/types/scene_record.hpp"
 
@@ -18,11 +19,10 @@ namespace landmarkdb {
 struct Entry {
   CatalogEntry stored;
   SurfaceGrid grid;
-  SurfaceGrid wide;                            // of places: the same surface in larger cells
-  std::vector<Eigen::Vector3f> wide_points;    // of its surfels
-  TestPoints test;                             // of the entry's own surface, for objects
-  std::vector<Eigen::Vector3f> sight_points;   // spread over the whole surface, for free space
-  std::vector<Eigen::Vector3f> sight_normals;  // theirs; empty where their side is not known
+  SurfaceGrid wide;         // of places: the same surface in larger cells
+  SightSurface wide_sight;  // of its surfels
+  TestPoints test;          // of the entry's own surface, for objects
+  SightSurface sight;       // spread over the whole surface, for free space
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean of the points
   double extent_m = 0.0;                             // twice the root mean square distance from it
 

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace landmarkdb {
+
+// The surface an entry predicts, in the entry's frame: points, and normals where their side is
+// known. Kept in blocks of near points, each in a ball, so that what is out of a view is passed
+// over a block at a time. Holds copies. Immutable, thread-safe.
+class SightSurface {
+ public:
+  struct Block {
+    std::uint32_t begin = 0, end = 0;  // of the points
+    Eigen::Vector3f centre = Eigen::Vector3f::Zero();
+    float radius_m = 0.0F;  // no point of the block lies further from the centre
+  };
+
+  SightSurface() = default;
+  // `points` in metres, finite; `normals` one a point, or none. Cost: O(N log N).
+  SightSurface(std::span<const Eigen::Vector3f> points,
+               std::span<const Eigen::Vector3f> normals = {});
+
+  std::size_t size() const { return points_.size(); }
+  bool has_normals() const { return !normals_.empty(); }
+  std::span<const Eigen::Vector3f> points() const { return points_; }  // block after block
+  std::span<const Eigen::Vector3f> normals() const { return normals_; }
+  std::span<const Block> blocks() const { return blocks_; }
+
+ private:
+  std::vector<Eigen::Vector3f> points_;
+  std::vector<Eigen::Vector3f> normals_;
+  std::vector<Block> blocks_;
+};
+
+}  // namespace landmarkdb
