@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "engine/geometry/pose.hpp"
+#include "engine/registration/plane_sums.hpp"
 
 namespace landmarkdb {
 
@@ -14,42 +15,28 @@ namespace {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-struct NormalEquations {
-  Matrix6d A = Matrix6d::Zero();
-  Vector6d b = Vector6d::Zero();
-  double weight = 0.0;
-  double squared = 0.0;
-  std::size_t pairs = 0;
-};
-
-NormalEquations accumulate(const SurfaceGrid& target,
-                           std::span<const Eigen::Vector3f> source,
-                           std::span<const Eigen::Vector3f> source_normals,
-                           const Eigen::Isometry3d& T,
-                           const Eigen::Vector3d& centre,
-                           double scale_m,
-                           double min_agreement) {
-  NormalEquations sum;
+// What the pose of one step pairs, every `stride`-th source point.
+PlaneSums accumulate(const SurfaceGrid& target,
+                     std::span<const Eigen::Vector3f> source,
+                     std::span<const Eigen::Vector3f> source_normals,
+                     std::size_t stride,
+                     const Eigen::Isometry3d& T,
+                     const Eigen::Vector3d& centre,
+                     double scale_m,
+                     double min_agreement) {
+  PlaneSummer summer(PairWeight::kGemanMcClure, scale_m);
   const Eigen::Matrix3f R = T.linear().cast<float>();
   const Eigen::Vector3f t = T.translation().cast<float>();
+  const Eigen::Vector3f middle = centre.cast<float>();
   const auto agreement = static_cast<float>(min_agreement);
-  for (std::size_t i = 0; i < source.size(); ++i) {
+  for (std::size_t i = 0; i < source.size(); i += stride) {
     const Eigen::Vector3f p = R * source[i] + t;
-    const Surfel* surfel = target.near(p);
-    if (surfel == nullptr || surfel->normal.dot(R * source_normals[i]) < agreement) continue;
-    const Eigen::Vector3d n = surfel->normal.cast<double>();
-    const double residual = n.dot((p - surfel->point).cast<double>());
-    const double ratio = residual / scale_m;
-    const double w = 1.0 / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio));
-    Vector6d J;
-    J << n, (p.cast<double>() - centre).cross(n);
-    sum.A.noalias() += w * J * J.transpose();
-    sum.b.noalias() -= w * residual * J;
-    sum.weight += w;
-    sum.squared += w * residual * residual;
-    ++sum.pairs;
+    const Surfel& surfel = target.near_or_none(p);
+    const bool agrees = surfel.normal.dot(R * source_normals[i]) >= agreement;
+    summer.add(
+        surfel.normal, p - middle, surfel.normal.dot(p - surfel.point), agrees ? 1.0F : 0.0F);
   }
-  return sum;
+  return summer.finish();
 }
 
 // Solves A x = b in the directions that A fixes; the others stay at zero. `length` brings rotation
@@ -95,21 +82,25 @@ IcpResult refine_icp(const SurfaceGrid& target,
   IcpResult result;
   result.T_target_source = T_target_source;
   double scale_cells = options.start_scale_cells;
+  // While the scale shrinks some hundreds of points show the way as well as all.
+  constexpr std::size_t kEnoughOnTheWay = 800;
+  const std::size_t stride = std::max<std::size_t>(1, source.size() / kEnoughOnTheWay);
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     Eigen::Isometry3d& T = result.T_target_source;
     const Eigen::Vector3d centre = T * centre_source;
-    const NormalEquations sum = accumulate(target,
-                                           source,
-                                           source_normals,
-                                           T,
-                                           centre,
-                                           scale_cells * cell,
-                                           options.min_normal_agreement);
+    const bool at_end = scale_cells <= options.end_scale_cells * 1.001;
+    const PlaneSums sum = accumulate(target,
+                                     source,
+                                     source_normals,
+                                     at_end ? 1 : stride,
+                                     T,
+                                     centre,
+                                     scale_cells * cell,
+                                     options.min_normal_agreement);
     if (sum.pairs < 6) break;
     const Vector6d x = solve_observable(sum.A, sum.b, length);
     T.linear() = nearest_rotation(rotation_from_vector(x.tail<3>()) * T.linear());
     T.translation() = centre + x.head<3>() - T.linear() * centre_source;
-    const bool at_end = scale_cells <= options.end_scale_cells * 1.001;
     if (at_end && x.head<3>().norm() < options.stop_translation_cells * cell &&
         x.tail<3>().norm() < options.stop_rotation_rad) {
       result.converged = true;
@@ -119,16 +110,17 @@ IcpResult refine_icp(const SurfaceGrid& target,
     scale_cells = std::max(options.end_scale_cells, scale_cells * kAnneal);
   }
   result.centre_target = result.T_target_source * centre_source;
-  const NormalEquations final_sum = accumulate(target,
-                                               source,
-                                               source_normals,
-                                               result.T_target_source,
-                                               result.centre_target,
-                                               options.end_scale_cells * cell,
-                                               options.min_normal_agreement);
+  const PlaneSums final_sum = accumulate(target,
+                                         source,
+                                         source_normals,
+                                         1,
+                                         result.T_target_source,
+                                         result.centre_target,
+                                         options.end_scale_cells * cell,
+                                         options.min_normal_agreement);
   result.information = final_sum.A;
   if (final_sum.weight > 0.0) {
-    result.noise_m2 = final_sum.squared / final_sum.weight;
+    result.noise_m2 = final_sum.squared_m2 / final_sum.weight;
     result.rmse_m = std::sqrt(result.noise_m2);
   }
   if (!source.empty()) {

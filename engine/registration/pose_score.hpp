@@ -1,12 +1,13 @@
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "engine/base/fast_exp.hpp"
 #include "engine/registration/surface_grid.hpp"
 
 namespace landmarkdb {
@@ -40,12 +41,10 @@ inline float surface_fit(const SurfaceGrid& target,
                          const Eigen::Vector3f& p,
                          const Eigen::Vector3f& normal,
                          float factor) {
-  const Surfel* surfel = target.near(p);
-  if (surfel == nullptr) return 0.0F;
-  const float agreement = surfel->normal.dot(normal);
-  if (agreement <= 0.0F) return 0.0F;
-  const float distance = surfel->normal.dot(p - surfel->point);
-  return agreement * std::exp(factor * distance * distance);
+  const Surfel& surfel = target.near_or_none(p);
+  const float agreement = std::max(surfel.normal.dot(normal), 0.0F);
+  const float distance = surfel.normal.dot(p - surfel.point);
+  return agreement * exp_of_negative(factor * distance * distance);
 }
 
 // How well the points lie on the surface under the pose: the mean over the first `count` test

@@ -94,12 +94,13 @@ SurfaceGrid::SurfaceGrid(std::span<const Eigen::Vector3f> points,
     last = last.cwiseMax(block_of((cell.array() + reach_).matrix()));
   }
   make_table(first, last);
-  surfels_.reserve(points.size());
+  surfels_.reserve(points.size() + 1);
+  surfels_.push_back({Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()});
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i % kStep == 0) context.check("grid");
     if (blocks_.size() > kMostBlocks) refuse_blocks(blocks_.size(), i, points.size(), cell_m);
     surfels_.push_back(Surfel{points[i], normals[i]});
-    insert_around(static_cast<std::uint32_t>(i));
+    insert_around(static_cast<std::uint32_t>(i + 1));
   }
 }
 
@@ -163,8 +164,8 @@ void SurfaceGrid::insert_around(std::uint32_t surfel) {
         const float distance = (centre - p).squaredNorm();
         if (distance > reach_squared) continue;
         std::uint32_t& stored = block_at(block_of(cell))[cell_in_block(cell)];
-        if (stored == 0 || (centre - surfels_[stored - 1].point).squaredNorm() > distance) {
-          stored = surfel + 1;
+        if (stored == 0 || (centre - surfels_[stored].point).squaredNorm() > distance) {
+          stored = surfel;
         }
       }
     }

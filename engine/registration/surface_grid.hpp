@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -56,35 +57,47 @@ class SurfaceGrid {
 
   // The surfel near `p`, or nullptr when no surface is within reach of p's cell.
   const Surfel* near(const Eigen::Vector3f& p) const {
-    const Cell cell = cell_of(p);
-    const std::uint32_t* block = find_block(block_of(cell));
-    if (block == nullptr) return nullptr;
-    const std::uint32_t stored = block[cell_in_block(cell)];
-    return stored == 0 ? nullptr : &surfels_[stored - 1];
+    const std::uint32_t stored = stored_at(p);
+    return stored == 0 ? nullptr : &surfels_[stored];
   }
+
+  // The same, but a surfel without a normal (all zero) where there is none: for loops that weigh
+  // what they find by its normal and would rather not branch.
+  const Surfel& near_or_none(const Eigen::Vector3f& p) const { return surfels_[stored_at(p)]; }
 
   float cell_m() const { return cell_m_; }
   // Beyond this distance from the surface near() finds nothing.
   float reach_m() const { return cell_m_ * static_cast<float>(reach_); }
-  std::span<const Surfel> surfels() const { return surfels_; }
+  std::span<const Surfel> surfels() const { return std::span(surfels_).subspan(1); }
   std::size_t memory_bytes() const;
 
  private:
   static constexpr int kBlockBits = 3;
   static constexpr std::size_t kBlockCells = std::size_t{1} << (3 * kBlockBits);
-  using Block = std::array<std::uint32_t, kBlockCells>;  // surfel index + 1; 0: none
+  using Block = std::array<std::uint32_t, kBlockCells>;  // index into surfels_; 0: none
   using Cell = Eigen::Vector3i;
+  static constexpr Block kEmpty{};
 
   static constexpr int kLimit = 1 << 20;  // cells a side: 21 bits and a sign in each key
   static constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
   static constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};
 
-  Cell cell_of(const Eigen::Vector3f& p) const {
-    const Eigen::Array3f scaled = (p.array() * inverse_cell_).floor();
+  // Clamped before the cast: a float beyond int is undefined behaviour, and nothing is stored out
+  // there. Rounded down without a call, which SSE2 has no instruction for.
+  static int cell_on_axis(float scaled) {
     constexpr auto kFarthest = static_cast<float>(kLimit - 16);
-    // Clamped before the cast: a float beyond int is undefined behaviour, and nothing is stored out
-    // there.
-    return scaled.max(-kFarthest).min(kFarthest).cast<int>();
+    const float clamped = std::min(std::max(scaled, -kFarthest), kFarthest);
+    const int cut = static_cast<int>(clamped);
+    return cut - (static_cast<float>(cut) > clamped ? 1 : 0);
+  }
+  Cell cell_of(const Eigen::Vector3f& p) const {
+    return {cell_on_axis(p.x() * inverse_cell_),
+            cell_on_axis(p.y() * inverse_cell_),
+            cell_on_axis(p.z() * inverse_cell_)};
+  }
+  std::uint32_t stored_at(const Eigen::Vector3f& p) const {
+    const Cell cell = cell_of(p);
+    return find_block(block_of(cell))[cell_in_block(cell)];
   }
   static Cell block_of(const Cell& cell) {
     return {cell.x() >> kBlockBits, cell.y() >> kBlockBits, cell.z() >> kBlockBits};
@@ -108,18 +121,18 @@ class SurfaceGrid {
   std::size_t table_index(const Cell& at) const {
     return static_cast<std::size_t>(at.x() + table_size_.x() * (at.y() + table_size_.y() * at.z()));
   }
-  // The block's cells, or nullptr.
+  // The block's cells; an empty block where there is none.
   const std::uint32_t* find_block(const Cell& block) const {
     std::uint32_t number = kNoBlock;
     if (!table_.empty()) {
       const Cell at = block - table_first_;
-      if ((at.array() < 0).any() || (at.array() >= table_size_.array()).any()) return nullptr;
+      if ((at.array() < 0).any() || (at.array() >= table_size_.array()).any()) return kEmpty.data();
       number = table_[table_index(at)];
-      if (number == kNoBlock) return nullptr;
+      if (number == kNoBlock) return kEmpty.data();
     } else {
       const std::uint64_t key = key_of(block);
       const std::size_t slot = find_slot(key);
-      if (keys_[slot] != key) return nullptr;
+      if (keys_[slot] != key) return kEmpty.data();
       number = slots_[slot];
     }
     return blocks_[number].data();
@@ -132,7 +145,7 @@ class SurfaceGrid {
   float cell_m_;
   float inverse_cell_;
   int reach_;
-  std::vector<Surfel> surfels_;
+  std::vector<Surfel> surfels_;  // the first is none
   // Open addressing: keys_[slot] with blocks_[slots_[slot]]; kNoKey marks a free slot.
   std::vector<std::uint64_t> keys_;
   std::vector<std::uint32_t> slots_;
