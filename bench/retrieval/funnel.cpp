@@ -57,11 +57,7 @@ Funnel follow(const PointCloud& cloud,
   truth.translation() -= entry.record().prepared.origin;
   for (const EntryMatches& matches : result.matches) {
     if (matches.entry != right_entry) continue;
-    const auto proposals = propose_from_frames(matches.putative,
-                                               entry.record().descriptors,
-                                               matches.view->descriptors,
-                                               gravity_of(options, entry.record()),
-                                               std::nullopt);
+    const auto proposals = propose(input, matches);
     funnel.keypoints = matches.view->descriptors.size();
     funnel.proposals = proposals.size();
     for (const Proposal& proposal : proposals) {

@@ -30,6 +30,9 @@ struct PositionPrior {
   float radius_m = 0.0F;
 };
 
+// The correspondence of what none has proposed.
+inline constexpr std::uint32_t kNoCorrespondence = ~std::uint32_t{0};
+
 // A pose to be tested, and the correspondence that proposed it.
 struct Proposal {
   Eigen::Matrix3f R_target_source = Eigen::Matrix3f::Identity();

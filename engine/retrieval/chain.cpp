@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "engine/geometry/pose.hpp"
+#include "engine/registration/propose.hpp"
 
 namespace landmarkdb {
 
@@ -19,6 +20,21 @@ std::vector<std::uint32_t> agreeing(const ChainInput& input) {
     }
   }
   return inliers;
+}
+
+// The pair that proposed the pose; where none did, the one that agrees best with it.
+Correspondence proposer_of(const ChainInput& input) {
+  if (input.proposer != kNoCorrespondence) return input.correspondences[input.proposer];
+  const auto distance = [&](const Correspondence& pair) {
+    const Eigen::Vector3d there =
+        input.T_entry_sensor * input.query.keypoints[pair.query].cast<double>();
+    return (there - input.entry.keypoints[pair.target].cast<double>()).squaredNorm();
+  };
+  const Correspondence* best = &input.correspondences[0];
+  for (const Correspondence& pair : input.correspondences) {
+    if (distance(pair) < distance(*best)) best = &pair;
+  }
+  return *best;
 }
 
 Eigen::Isometry3d frame_at(const DescriptorSet& set, std::uint32_t keypoint) {
@@ -48,7 +64,7 @@ std::optional<Similarity> similarity_of(const ChainInput& input,
 ChainResult make_chain(const ChainInput& input) {
   ChainResult result;
   result.inliers = agreeing(input);
-  const Correspondence& proposer = input.correspondences[input.proposer];
+  const Correspondence proposer = proposer_of(input);
   const Eigen::Isometry3d T_landmark_sensor = frame_at(input.query, proposer.query).inverse();
   Similarity T_scene_landmark;
   const Eigen::Isometry3d T_scene_lrf = frame_at(input.entry, proposer.target);

@@ -18,7 +18,8 @@ struct ChainInput {
   const DescriptorSet& query;
   const DescriptorSet& entry;
   std::span<const Correspondence> correspondences;
-  std::uint32_t proposer = 0;        // the correspondence whose frames proposed the pose
+  // The correspondence whose frames proposed the pose; kNoCorrespondence: the one that agrees best.
+  std::uint32_t proposer = 0;
   Eigen::Isometry3d T_entry_sensor;  // the refined pose
   double inlier_m = 0.0;             // a correspondence within this distance agrees with it
   bool estimate_scale = false;

@@ -15,6 +15,7 @@ constexpr int kReachCells = 2;                 // 10 cm in a room described at 5
 constexpr double kWideCells = 3.0;             // 15 cm there
 constexpr std::size_t kSightPoints = 200'000;  // free space is judged on what of these is in view
 constexpr std::size_t kTestPoints = 512;
+constexpr std::size_t kLayouts = 1;  // what is built has one frame of right angles as a rule
 
 // Errors name the scene: there may be hundreds.
 SurfaceGrid grid_of_scene(const SceneRecord& record, const RunContext& context) {
@@ -37,6 +38,11 @@ SightSurface sight_of(const PreparedCloud& cloud) {
 }
 
 }  // namespace
+
+double plane_bin_m(double voxel_m) {
+  constexpr double kVoxels = 2.0;  // 10 cm in a room described at 5 cm
+  return kVoxels * voxel_m;
+}
 
 SurfaceGrid make_grid(const PreparedCloud& cloud, const RunContext& context) {
   return SurfaceGrid(cloud.points, cloud.normals, cloud.resolution_m, kReachCells, context);
@@ -73,14 +79,19 @@ Entry make_entry(CatalogEntry stored, const RunContext& context) {
   const PreparedCloud& cloud = record.prepared;
   const bool is_object = record.kind == EntryKind::kObject;
   constexpr std::uint64_t kSeed = 1;  // an entry's own sample: the same for every query
-  Entry entry{.stored = std::move(stored),
-              .grid = grid_of_scene(record, context),
-              .wide = is_object ? SurfaceGrid({}, {}, 1.0, 0) : make_wide_grid(cloud),
-              .wide_sight = {},
-              .test = select_test_points(cloud.points, cloud.normals, {}, kTestPoints, kSeed),
-              .sight = sight_of(cloud),
-              .centre = Eigen::Vector3d::Zero(),
-              .extent_m = 0.0};
+  Entry entry{
+      .stored = std::move(stored),
+      .grid = grid_of_scene(record, context),
+      .wide = is_object ? SurfaceGrid({}, {}, 1.0, 0) : make_wide_grid(cloud),
+      .wide_sight = {},
+      .planes = is_object
+                    ? std::vector<PlaneLayout>{}
+                    : lay_out_planes(
+                          cloud.points, cloud.normals, plane_bin_m(cloud.resolution_m), kLayouts),
+      .test = select_test_points(cloud.points, cloud.normals, {}, kTestPoints, kSeed),
+      .sight = sight_of(cloud),
+      .centre = Eigen::Vector3d::Zero(),
+      .extent_m = 0.0};
   std::vector<Eigen::Vector3f> wide_points;
   for (const Surfel& surfel : entry.wide.surfels()) wide_points.push_back(surfel.point);
   entry.wide_sight = SightSurface(wide_points);

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "engine/base/run_context.hpp"
+#include "engine/registration/plane_layout.hpp"
 #include "engine/registration/pose_score.hpp"
 #include "engine/registration/sight_surface.hpp"
 #include "engine/registration/surface_grid.hpp"
@@ -19,10 +20,11 @@ namespace landmarkdb {
 struct Entry {
   CatalogEntry stored;
   SurfaceGrid grid;
-  SurfaceGrid wide;         // of places: the same surface in larger cells
-  SightSurface wide_sight;  // of its surfels
-  TestPoints test;          // of the entry's own surface, for objects
-  SightSurface sight;       // spread over the whole surface, for free space
+  SurfaceGrid wide;                 // of places: the same surface in larger cells
+  SightSurface wide_sight;          // of its surfels
+  std::vector<PlaneLayout> planes;  // of places that have a frame of right angles
+  TestPoints test;                  // of the entry's own surface, for objects
+  SightSurface sight;               // spread over the whole surface, for free space
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean of the points
   double extent_m = 0.0;                             // twice the root mean square distance from it
 
@@ -37,6 +39,9 @@ SurfaceGrid make_grid(const PreparedCloud& cloud, const RunContext& context = {}
 GridSize grid_size(std::span<const Eigen::Vector3f> points,
                    double voxel_m,
                    const RunContext& context);
+
+// Bins in which the planes of a place and of a query for it are counted, of a working resolution.
+double plane_bin_m(double voxel_m);
 
 // The grid on which a proposal is first tested, in cells a few times as large.
 SurfaceGrid make_wide_grid(const PreparedCloud& cloud);

@@ -23,6 +23,7 @@ namespace {
 constexpr double kSightStepRad = std::numbers::pi / 180.0;
 constexpr std::size_t kTestPoints = 512;
 constexpr std::size_t kSamplePoints = 4000;
+constexpr std::size_t kLayouts = 2;  // which way furniture faces may outweigh a glimpse of a wall
 // Keypoints of one view: a whole turn of a 64-line laser has 14,000, and each costs 1.4 KB and its
 // proposals.
 constexpr std::size_t kMostKeypoints = 15'000;
@@ -120,6 +121,8 @@ QueryView view_query(const CleanQuery& query,
       view.sample_normals.push_back(view.prepared.normals[i]);
     }
   }
+  view.planes = lay_out_planes(
+      view.prepared.points, view.prepared.normals, plane_bin_m(options.voxel_m), kLayouts);
   Keypoints keypoints;
   {
     const StageTimer timer(timings.keypoints);

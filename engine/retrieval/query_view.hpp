@@ -7,6 +7,7 @@
 
 #include "engine/base/run_context.hpp"
 #include "engine/base/stage_timings.hpp"
+#include "engine/registration/plane_layout.hpp"
 #include "engine/registration/pose_score.hpp"
 #include "engine/registration/range_image.hpp"
 #include "engine/types/features.hpp"
@@ -35,6 +36,7 @@ struct QueryView {
   TestPoints test;                             // for testing proposals, most telling first
   std::vector<Eigen::Vector3f> sample_points;  // spread evenly, for refinement and overlap
   std::vector<Eigen::Vector3f> sample_normals;
+  std::vector<PlaneLayout> planes;  // what may be the frames of right angles it shows
 };
 
 QueryView view_query(const CleanQuery& query,

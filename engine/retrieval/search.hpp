@@ -77,6 +77,7 @@ struct EntryMatches {
   std::vector<const char*> dropped_by;   // empty, or one a putative pair; "" where it was kept
   CorrespondenceCounts counts;
   PoseCounts poses;
+  bool by_planes = false;  // poses that lay planes on planes are tested too
   // The paper's search: the ratio that would leave four pairs; 0 where none does.
   double ratio_for_four = 0.0;
 };
@@ -93,6 +94,9 @@ struct SearchResult {
 // in the query.
 void search_places(const SearchInput& input, SearchResult& result);
 void search_objects(const SearchInput& input, SearchResult& result);
+
+// What is tested of an entry: a pose from each putative pair, and those that lay planes on planes.
+std::vector<Proposal> propose(const SearchInput& input, const EntryMatches& matches);
 
 // Plane distance at which a point lies on the entry's surface: that of the finest entry asked, so
 // that entries of different resolution compete fairly, but not less than the entry can tell.

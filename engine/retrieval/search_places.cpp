@@ -4,6 +4,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/registration/propose.hpp"
+#include "engine/registration/propose_from_planes.hpp"
 #include "engine/retrieval/rank_poses.hpp"
 #include "engine/retrieval/search.hpp"
 
@@ -75,6 +76,19 @@ void match_level(const SearchInput& input,
   }
 }
 
+// Planes propose as many poses of a place as all its pairs do: they are tried in those places that
+// most of the query's keypoints have neighbours in.
+void choose_for_planes(std::vector<EntryMatches>& matches) {
+  constexpr std::size_t kMostPlaces = 4;
+  std::vector<EntryMatches*> order;
+  for (EntryMatches& one : matches) order.push_back(&one);
+  std::stable_sort(order.begin(), order.end(), [](const EntryMatches* a, const EntryMatches* b) {
+    return a->putative.size() > b->putative.size();
+  });
+  order.resize(std::min(order.size(), kMostPlaces));
+  for (EntryMatches* one : order) one->by_planes = true;
+}
+
 void propose_and_rank(const SearchInput& input,
                       std::size_t m,
                       std::size_t settled_each,
@@ -83,12 +97,7 @@ void propose_and_rank(const SearchInput& input,
   const StageTimer timer(input.timings.pose);
   const EntryMatches& matches = result.matches[m];
   const Entry& entry = input.entries[matches.entry];
-  const std::vector<Proposal> proposals =
-      propose_from_frames(matches.putative,
-                          entry.record().descriptors,
-                          matches.view->descriptors,
-                          gravity_of(input.options, entry.record()),
-                          prior_of(input, entry.record()));
+  const std::vector<Proposal> proposals = propose(input, matches);
   const std::vector<Proposal> settled = settle_best(entry.wide,
                                                     entry.grid,
                                                     matches.view->test,
@@ -106,6 +115,23 @@ void propose_and_rank(const SearchInput& input,
 }
 
 }  // namespace
+
+std::vector<Proposal> propose(const SearchInput& input, const EntryMatches& matches) {
+  const Entry& entry = input.entries[matches.entry];
+  const std::optional<Gravity> gravity = gravity_of(input.options, entry.record());
+  const std::optional<PositionPrior> prior = prior_of(input, entry.record());
+  std::vector<Proposal> proposals = propose_from_frames(
+      matches.putative, entry.record().descriptors, matches.view->descriptors, gravity, prior);
+  if (!matches.by_planes) return proposals;
+  for (const PlaneLayout& of_entry : entry.planes) {
+    for (const PlaneLayout& of_query : matches.view->planes) {
+      const std::vector<Proposal> more =
+          propose_from_planes(of_entry, of_query, input.query.centre.cast<float>(), gravity, prior);
+      proposals.insert(proposals.end(), more.begin(), more.end());
+    }
+  }
+  return proposals;
+}
 
 double common_tolerance_m(const SearchInput& input, const Entry& entry) {
   constexpr double kCells = 0.75;
@@ -141,6 +167,7 @@ void search_places(const SearchInput& input, SearchResult& result) {
       match_level(input, make_level(input.entries, asked), view, result);
     }
   }
+  choose_for_planes(result.matches);
   const std::size_t places = std::max<std::size_t>(result.matches.size(), 1);
   const std::size_t settled_each = std::clamp(kSettled / places, kSettledAtLeast, kSettledAPlace);
   for (std::size_t m = 0; m < result.matches.size(); ++m) {
