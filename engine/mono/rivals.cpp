@@ -146,6 +146,7 @@ void settle_rivals(std::span<const SearchModel> models,
     run.check("refine");
     settle_twins(models, image, camera, candidates[i]);
     check.settle_on_edges(candidates[i]);
+    check.judge_shape(candidates[i]);
   }
   sort_by_rank(candidates, kMostKept);
   prefer_front(models, candidates);
