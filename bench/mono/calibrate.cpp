@@ -111,7 +111,10 @@ json rows_of(const std::vector<PictureHypothesis>& told) {
                     {"matched", e.matched},
                     {"visible", e.visible},
                     {"rms_px", e.rms_px},
-                    {"edge_share", e.edge_share}});
+                    {"edge_share", e.edge_share},
+                    {"whole", e.edges.whole},
+                    {"overrun", e.edges.overrun},
+                    {"shape_odds", e.shape_odds}});
   }
   return rows;
 }
@@ -135,7 +138,7 @@ json calibrate(const Settings& settings) {
     if (!h.right) least_nfa = std::min(least_nfa, h.evidence.log10_nfa);
   std::printf("least log10 of false alarms of a wrong hypothesis: %.1f\n", least_nfa);
   result["least_wrong_log10_nfa"] = least_nfa;
-  result["by_points"] = fit_weights("by points", by_points, kConfidenceTerms - 1);
+  result["by_points"] = fit_weights("by points", by_points, kPointTerms);
   result["with_edges"] = fit_weights("with edges", with_edges, kConfidenceTerms);
   result["rows"] = rows_of(pictures.told);
   return result;
@@ -151,8 +154,9 @@ json reliability(const Settings& settings) {
     known += is_known ? 1 : 0;
     unknown += is_known ? 0 : 1;
     found += o.accepted && o.right ? 1 : 0;
-    wrong_known += is_known && o.accepted && !o.right ? 1 : 0;
-    wrong_unknown += !is_known && o.accepted ? 1 : 0;
+    const bool wrong = o.accepted && !o.right;
+    wrong_known += is_known && wrong ? 1 : 0;
+    wrong_unknown += !is_known && wrong ? 1 : 0;
     if (!o.told) continue;
     confidence.push_back(o.confidence);
     right.push_back(o.right);

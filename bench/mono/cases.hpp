@@ -13,6 +13,7 @@ struct Settings {
   std::size_t pictures = 600, picture_models = 12;
   std::uint64_t seed = 10000;
   std::string json_file;
+  std::string overlays;  // folder for pictures with their answers; empty: none
   bool cpu_time = false;
   std::string only;  // rows whose name has this in it
 };

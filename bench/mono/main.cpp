@@ -11,6 +11,9 @@
 
 #include "bench/mono/calibrate.hpp"
 #include "bench/mono/cases.hpp"
+#include "bench/mono/feature_times.hpp"
+#include "bench/mono/funnel.hpp"
+#include "bench/mono/ready.hpp"
 #include "cli/main_guard.hpp"
 #include "engine/base/error.hpp"
 
@@ -118,11 +121,19 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_subcommand("calibrate", "fit the weights of the confidence, and what edges say");
   app.add_subcommand("reliability", "the confidence of rendered pictures, and how many are right");
+  app.add_subcommand("features", "time of the features of rendered pictures");
+  app.add_subcommand("ready", "time and memory until `models` models are ready");
+  app.add_subcommand("funnel", "which stage loses the known objects of rendered pictures");
+  app.add_option(
+      "--overlays", settings.overlays, "of `funnel`: pictures with their answers go there");
   return cli::run_main(argc, argv, app, [&] {
     json result;
     if (app.got_subcommand("recognition")) result["recognition"] = recognition_rows(settings);
     if (app.got_subcommand("calibrate")) result["calibration"] = calibrate(settings);
     if (app.got_subcommand("reliability")) result["reliability"] = reliability(settings);
+    if (app.got_subcommand("features")) result["features"] = feature_times(settings);
+    if (app.got_subcommand("ready")) result["ready"] = ready(settings);
+    if (app.got_subcommand("funnel")) result["funnel"] = funnel(settings);
     if (!settings.json_file.empty()) {
       std::ofstream file(settings.json_file);
       file << result.dump(1) << "\n";

@@ -143,21 +143,6 @@ Eigen::Isometry3d place(Random& random,
   return T;
 }
 
-bool is_right(const MonoModel& model,
-              const Eigen::Isometry3d& found,
-              const Eigen::Isometry3d& truth) {
-  const Eigen::Vector3d middle = middle_of(model);
-  std::vector<Eigen::Matrix4d> symmetries = model.symmetries;
-  if (symmetries.empty()) symmetries.push_back(Eigen::Matrix4d::Identity());
-  return std::any_of(symmetries.begin(), symmetries.end(), [&](const Eigen::Matrix4d& S) {
-    const Eigen::Isometry3d same = truth * Eigen::Isometry3d(S).inverse();
-    const double turn_deg =
-        rotation_angle_rad(same.linear().transpose() * found.linear()) * 180.0 / std::numbers::pi;
-    const double shift_m = (same * middle - found * middle).norm();
-    return turn_deg < kRightTurn_deg && shift_m < kRightShift * (truth * middle).norm();
-  });
-}
-
 int number_of(const MonoCatalog& catalog, const std::string& name) {
   for (std::size_t i = 0; i < catalog.entries.size(); ++i)
     if (catalog.entries[i].record->model.name == name) return static_cast<int>(i);
@@ -216,6 +201,27 @@ Picture make_picture(const MonoCatalog& catalog, bool known, std::uint64_t seed)
   return picture;
 }
 
+Picture make_picture(const MonoCatalog& catalog,
+                     const PictureOptions& options,
+                     std::size_t number) {
+  return make_picture(catalog, number % 2 == 0, options.seed * 1'000'003 + options.models + number);
+}
+
+bool is_right_pose(const MonoModel& model,
+                   const Eigen::Isometry3d& found,
+                   const Eigen::Isometry3d& truth) {
+  const Eigen::Vector3d middle = middle_of(model);
+  std::vector<Eigen::Matrix4d> symmetries = model.symmetries;
+  if (symmetries.empty()) symmetries.push_back(Eigen::Matrix4d::Identity());
+  return std::any_of(symmetries.begin(), symmetries.end(), [&](const Eigen::Matrix4d& S) {
+    const Eigen::Isometry3d same = truth * Eigen::Isometry3d(S).inverse();
+    const double turn_deg =
+        rotation_angle_rad(same.linear().transpose() * found.linear()) * 180.0 / std::numbers::pi;
+    const double shift_m = (same * middle - found * middle).norm();
+    return turn_deg < kRightTurn_deg && shift_m < kRightShift * (truth * middle).norm();
+  });
+}
+
 PictureOutcomes run_pictures(const PictureOptions& options) {
   constexpr double kStep_px = 6.0;
   constexpr std::size_t kMostSamples = 1000, kTold = 10;
@@ -226,8 +232,7 @@ PictureOutcomes run_pictures(const PictureOptions& options) {
     models.push_back(prepare_model(entry.record, tables_of(*entry.record, {})));
   PictureOutcomes outcomes;
   for (std::size_t i = 0; i < options.pictures; ++i) {
-    const Picture picture =
-        make_picture(*catalog, i % 2 == 0, options.seed * 1'000'003 + options.models + i);
+    const Picture picture = make_picture(*catalog, options, i);
     const RecognizeResult result =
         recognizer.recognize(picture.image, picture.camera, {.top = kTold}, {});
     Outcome outcome;
@@ -242,17 +247,11 @@ PictureOutcomes run_pictures(const PictureOptions& options) {
                            hypothesis.T_camera_object.translation()};
       const bool right =
           number == picture.shown &&
-          is_right(model.model(), hypothesis.T_camera_object, picture.T_camera_object);
+          is_right_pose(model.model(), hypothesis.T_camera_object, picture.T_camera_object);
       const double length_px =
           kStep_px * static_cast<double>(
                          visible_edges(model, picture.camera, pose, kStep_px, kMostSamples).size());
-      const RecognitionEvidence evidence{.log10_nfa = hypothesis.log10_nfa,
-                                         .matched = static_cast<double>(hypothesis.pairs.size()),
-                                         .visible = static_cast<double>(hypothesis.visible_points),
-                                         .rms_px = hypothesis.rms_px,
-                                         .has_edges = true,
-                                         .edge_share = hypothesis.edge_share,
-                                         .margin = hypothesis.margin};
+      const RecognitionEvidence evidence = evidence_of(hypothesis, true);
       outcomes.told.push_back(
           {i, picture.shown >= 0, right, hypothesis.confidence, length_px, evidence});
       if (&hypothesis != &result.hypotheses.front()) continue;

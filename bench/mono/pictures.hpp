@@ -35,6 +35,14 @@ std::shared_ptr<const MonoCatalog> make_picture_catalog(std::uint64_t seed, std:
 // The object differs from its model by up to 1 % of its size (sigma), the camera from its
 // calibration by up to 0.5 % of the focal length.
 Picture make_picture(const MonoCatalog& catalog, bool known, std::uint64_t seed);
+// Picture `number` of those that options speak of.
+Picture make_picture(const MonoCatalog& catalog, const PictureOptions& options, std::size_t number);
+
+// Whether a pose is the true one of a model, within 5 degrees and a twentieth of its distance, but
+// for the model's symmetries.
+bool is_right_pose(const MonoModel& model,
+                   const Eigen::Isometry3d& found,
+                   const Eigen::Isometry3d& truth);
 
 // One hypothesis about a picture.
 struct PictureHypothesis {
@@ -51,8 +59,7 @@ struct PictureOutcomes {
   std::vector<PictureHypothesis> told;  // all hypotheses, by picture and best first
 };
 
-// What the recogniser says of them. Right: the model, within 5 degrees and a twentieth of its
-// distance, but for its symmetries.
+// What the recogniser says of them. Right: the model, and is_right_pose.
 PictureOutcomes run_pictures(const PictureOptions& options);
 
 }  // namespace landmarkdb::bench

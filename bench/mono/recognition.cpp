@@ -59,13 +59,7 @@ Outcome judge(const RecognizeResult& result,
   outcome.told = true;
   outcome.accepted = result.status == RecognizeStatus::kRecognized;
   outcome.confidence = best.confidence;
-  outcome.evidence = {.log10_nfa = best.log10_nfa,
-                      .matched = static_cast<double>(best.pairs.size()),
-                      .visible = static_cast<double>(best.visible_points),
-                      .rms_px = best.rms_px,
-                      .has_edges = edges,
-                      .edge_share = best.edge_share,
-                      .margin = best.margin};
+  outcome.evidence = evidence_of(best, edges);
   if (record == nullptr || best.model != record->model.name) return outcome;
   outcome.turn_deg = rotation_angle_rad(best.T_camera_object.linear().transpose() * scene.truth.R) *
                      180.0 / std::numbers::pi;

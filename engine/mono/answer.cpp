@@ -51,6 +51,8 @@ MonoHypothesis told(const SearchModel& search,
   hypothesis.rms_px = candidate.rms_px;
   hypothesis.log10_nfa = candidate.rank();
   hypothesis.edge_share = candidate.edge_share;
+  hypothesis.edges = candidate.edges;
+  hypothesis.shape_odds = candidate.shape_odds;
   hypothesis.symmetry = search.model().symmetry_class;
   hypothesis.ambiguous = candidate.ambiguous;
   for (const Match& match : candidate.matches) {
@@ -99,14 +101,9 @@ void write_answer(std::span<const SearchModel> models,
     // and that of a symmetric model is the model.
     if (candidate.mirror_margin.value_or(0.0) < -kMirrorDecides)
       hypothesis.margin = std::min(hypothesis.margin, *candidate.mirror_margin);
-    hypothesis.confidence =
-        recognition_confidence({.log10_nfa = candidate.rank(),
-                                .matched = static_cast<double>(candidate.matches.size()),
-                                .visible = static_cast<double>(candidate.visible),
-                                .rms_px = candidate.rms_px / scale,
-                                .has_edges = !edges.empty(),
-                                .edge_share = candidate.edge_share,
-                                .margin = hypothesis.margin});
+    RecognitionEvidence evidence = evidence_of(hypothesis, !edges.empty());
+    evidence.rms_px /= scale;
+    hypothesis.confidence = recognition_confidence(evidence);
     // The rival has its part of it: the odds of the two are those of their false alarms.
     hypothesis.confidence /= 1.0 + std::pow(10.0, -hypothesis.margin);
     if (candidate.ambiguous) {

@@ -15,10 +15,9 @@ constexpr std::size_t kCircleSamples = 24;  // of a circle's rim
 constexpr double kGrazing = 0.05;           // n.view at which a rim on a face is no longer seen
 
 // Adds the sample where a direction along an edge shows up in the image.
-bool add_sample(const SearchModel& model,
+bool add_sample(const PlaceSight& sight,
                 const Camera& camera,
                 const RigidPose& pose,
-                const Eigen::Vector3d& eye,
                 const Eigen::Vector3d& place,
                 const Eigen::Vector3d& along,
                 std::vector<EdgeSample>& samples) {
@@ -31,7 +30,7 @@ bool add_sample(const SearchModel& model,
       !(lens.uv.y() <= camera.height - 1.0)) {
     return false;
   }
-  if (!model.visibility.place_seen_from(place, eye)) return false;
+  if (!sight.sees(place)) return false;
   const Eigen::Vector3d d = pose.R * along;
   const Eigen::Vector2d tangent = lens.duv_dray * (d.head<2>() - ray * d.z());
   const double length = tangent.norm();
@@ -40,7 +39,7 @@ bool add_sample(const SearchModel& model,
   return true;
 }
 
-void add_circle(const SearchModel& model,
+void add_circle(const PlaceSight& sight,
                 const ModelCircle& circle,
                 const Camera& camera,
                 const RigidPose& pose,
@@ -55,7 +54,7 @@ void add_circle(const SearchModel& model,
     // A rim lies on a face: it is looked at from a little above it.
     const Eigen::Vector3d place = circle.center + circle.radius_m * out;
     if (std::abs(n.dot((eye - place).normalized())) < kGrazing) continue;
-    add_sample(model, camera, pose, eye, place, along, samples);
+    add_sample(sight, camera, pose, place, along, samples);
   }
 }
 
@@ -125,6 +124,7 @@ std::vector<EdgeSample> visible_edges(const SearchModel& model,
                                       std::size_t most) {
   std::vector<EdgeSample> samples;
   const Eigen::Vector3d eye = -(pose.R.transpose() * pose.t);
+  const PlaceSight sight(model.visibility, eye);
   const MonoModel& m = model.model();
   const double focal = 0.5 * (std::abs(camera.fx) + std::abs(camera.fy));
   const std::size_t lines = m.edges.size() + m.circles.size();
@@ -140,10 +140,10 @@ std::vector<EdgeSample> visible_edges(const SearchModel& model,
         static_cast<std::size_t>(std::clamp(steps, 2.0, static_cast<double>(share)));
     for (std::size_t i = 0; i < n; ++i) {
       const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
-      add_sample(model, camera, pose, eye, from + at * along, along, samples);
+      add_sample(sight, camera, pose, from + at * along, along, samples);
     }
   }
-  for (const ModelCircle& circle : m.circles) add_circle(model, circle, camera, pose, eye, samples);
+  for (const ModelCircle& circle : m.circles) add_circle(sight, circle, camera, pose, eye, samples);
   return samples;
 }
 

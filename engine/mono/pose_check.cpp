@@ -7,6 +7,7 @@
 
 #include "engine/mono/point_pose.hpp"
 #include "engine/mono/refine_pose.hpp"
+#include "engine/mono/stretched_rival.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -363,6 +364,36 @@ double PoseCheck::score_edges(std::size_t samples, double step_px, double share)
                     (1.0 - share) * std::log10((1.0 - kOfRight) / (1.0 - kOfWrong)));
 }
 
+std::vector<PosePoint> PoseCheck::matched_points(const MonoCandidate& candidate) const {
+  std::vector<PosePoint> points;
+  for (const Match& match : candidate.matches) {
+    PosePoint point = models_[candidate.model].points[match.model];
+    point.uv = image_[match.image].uv;
+    point.sigma_px = image_[match.image].sigma_px;
+    points.push_back(point);
+  }
+  return points;
+}
+
+void PoseCheck::judge_shape(MonoCandidate& candidate) const {
+  constexpr double kStep_px = 6.0, kReach_px = 8.0, kCosine = 0.906, kEdgeSigma_px = 0.7;
+  constexpr std::size_t kMostSamples = 300;
+  const SearchModel& search = models_[candidate.model];
+  std::vector<PoseEdge> along;
+  if (!edges_.empty()) {
+    for (const EdgeSample& sample :
+         visible_edges(search, camera_, candidate.pose, kStep_px * options_.scale, kMostSamples)) {
+      const EdgePoint* edge =
+          edges_.nearest(sample.uv, sample.normal, kReach_px * options_.scale, kCosine);
+      if (edge != nullptr)
+        along.push_back({sample.xyz, edge->uv.cast<double>(), sample.normal, kEdgeSigma_px});
+    }
+    candidate.edges = judge_edges(search, camera_, candidate.pose, edges_, options_.scale);
+  }
+  candidate.shape_odds =
+      stretched_rival(search, camera_, candidate.pose, matched_points(candidate), along).log10_odds;
+}
+
 void PoseCheck::settle_on_edges(MonoCandidate& candidate) const {
   if (edges_.empty()) return;
   constexpr double kStep_px = 6.0;
@@ -371,13 +402,7 @@ void PoseCheck::settle_on_edges(MonoCandidate& candidate) const {
   constexpr double kCosine = 0.906;      // 25 degrees
   constexpr double kEdgeSigma_px = 1.0;  // samples stand close: their errors go together
   const SearchModel& search = models_[candidate.model];
-  std::vector<PosePoint> points;
-  for (const Match& match : candidate.matches) {
-    PosePoint point = search.points[match.model];
-    point.uv = image_[match.image].uv;
-    point.sigma_px = image_[match.image].sigma_px;
-    points.push_back(point);
-  }
+  const std::vector<PosePoint> points = matched_points(candidate);
   std::vector<PoseEdge> along;
   RigidPose pose = candidate.pose;
   std::vector<EdgeSample> samples =

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "engine/geometry/camera.hpp"
+#include "engine/mono/edge_evidence.hpp"
 #include "engine/mono/edge_grid.hpp"
 #include "engine/mono/image_view.hpp"
 #include "engine/mono/rigid_pose.hpp"
@@ -34,7 +35,9 @@ struct MonoCandidate {
   double log10_nfa = 0.0;  // of points, links and directions together
   double edge_share = 0.0;
   double edge_odds = 0.0;  // log10, negative for the model: see score_edges
-  bool ambiguous = false;  // `twin`, the other tilt of a plane, fits about as well
+  EdgeEvidence edges{};
+  double shape_odds = 0.0;  // log10, positive for the model: see stretched_rival
+  bool ambiguous = false;   // `twin`, the other tilt of a plane, fits about as well
   RigidPose twin{};
   double twin_odds = 0.0;  // of the twin against the pose
   // How much better it explains the image than the mirror image of its model does; none: the mirror
@@ -84,6 +87,9 @@ class PoseCheck {
   // Refinement with the edges of the image too, and their share; `rank` counts it from there.
   void settle_on_edges(MonoCandidate& candidate) const;
 
+  // What the model's own proportions and the run of its edges say; for `write_answer`.
+  void judge_shape(MonoCandidate& candidate) const;
+
   bool has_edges() const { return !edges_.empty(); }
 
   std::size_t looks() const { return looks_; }
@@ -95,6 +101,7 @@ class PoseCheck {
                       std::span<const std::uint16_t> seen,
                       double reach_px,
                       std::size_t need);
+  std::vector<PosePoint> matched_points(const MonoCandidate& candidate) const;
   bool refine(std::uint32_t model, RigidPose& pose, MonoCandidate* result) const;
   double score(const MonoCandidate& candidate, std::span<const std::uint16_t> seen) const;
   // How much likelier this share of its edges is where the model stands than where something else

@@ -40,7 +40,9 @@ ModelQuad make_quad(const SearchModel& search,
 
 }  // namespace
 
-std::vector<ModelQuad> quads_of(const SearchModel& search, std::uint32_t number) {
+std::vector<ModelQuad> quads_of(const SearchModel& search,
+                                std::uint32_t number,
+                                std::span<const ChosenQuad> chosen) {
   const std::vector<ModelFeature>& points = search.model().points;
   std::array<std::vector<Eigen::Vector2d>, kModelViews> images;
   std::array<std::size_t, kModelViews + 1> next{};  // where the quads of each view go
@@ -50,12 +52,12 @@ std::vector<ModelQuad> quads_of(const SearchModel& search, std::uint32_t number)
       images[view].push_back(axes * (point.xyz - search.center));
     }
   }
-  for (const ChosenQuad& quad : search.quads) {
+  for (const ChosenQuad& quad : chosen) {
     for (std::size_t view = 0; view < kModelViews; ++view) next[view + 1] += quad.views[view];
   }
   std::partial_sum(next.begin(), next.end(), next.begin());
   std::vector<ModelQuad> quads(next.back());
-  for (const ChosenQuad& quad : search.quads) {
+  for (const ChosenQuad& quad : chosen) {
     const std::array<std::uint16_t, 4>& s = quad.ids;
     for (std::size_t view = 0; view < kModelViews; ++view) {
       if (!quad.views[view]) continue;
@@ -72,12 +74,20 @@ std::vector<ModelQuad> quads_of(const SearchModel& search, std::uint32_t number)
   return quads;
 }
 
-QuadIndex::QuadIndex(std::span<const SearchModel> models, const RunContext& context) {
+QuadIndex::QuadIndex(std::span<const SearchModel> models,
+                     const RunContext& context,
+                     std::span<const char> wanted) {
+  RunContext quiet = context;  // progress is told from the calling thread only
+  quiet.progress = nullptr;
   std::vector<std::vector<ModelQuad>> parts(models.size());
   parallel_chunks(models.size(), context.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       context.check("models");
-      parts[i] = quads_of(models[i], static_cast<std::uint32_t>(i));
+      if (!wanted.empty() && wanted[i] == 0) continue;
+      const std::uint32_t number = static_cast<std::uint32_t>(i);
+      parts[i] = models[i].quads.empty()
+                     ? quads_of(models[i], number, read_quads(*models[i].record, quiet))
+                     : quads_of(models[i], number, models[i].quads);
     }
   });
   // Sorted by cell in two steps, each within what a cache holds: first by signature and the code's

@@ -28,13 +28,16 @@ struct ModelQuad {
   float angle_rad = 0.0F;  // of AB in the view's own image
 };
 
-// All quads of all models, by type signature and cell of the code.
+// All quads of models, by type signature and cell of the code.
 //
 // Built once a catalogue; const members are thread-safe. 44 bytes a quad, at most 150 a view.
 class QuadIndex {
  public:
-  // On `context.threads` threads; throws what `context.check` does.
-  explicit QuadIndex(std::span<const SearchModel> models, const RunContext& context = {});
+  // Of the `wanted` models, by number (empty: all). Quads that a search model leaves out are read
+  // from its record. On `context.threads` threads; throws what `context.check` does.
+  explicit QuadIndex(std::span<const SearchModel> models,
+                     const RunContext& context = {},
+                     std::span<const char> wanted = {});
 
   // Calls visit(quad) for each stored quad of this signature whose code is within `tolerance` of
   // `code` in each coordinate.
@@ -64,7 +67,9 @@ class QuadIndex {
 };
 
 // The chosen quads of one model, view by view, as the index stores them; `number` is its index.
-std::vector<ModelQuad> quads_of(const SearchModel& model, std::uint32_t number);
+std::vector<ModelQuad> quads_of(const SearchModel& model,
+                                std::uint32_t number,
+                                std::span<const ChosenQuad> chosen);
 
 template <typename Visit>
 void QuadIndex::near(std::uint8_t signature,

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "engine/types/recognition.hpp"
+
 namespace landmarkdb {
 
 // What an answer's confidence is made of.
@@ -13,12 +15,17 @@ struct RecognitionEvidence {
   double rms_px = 0.0;     // in pixels of a 640 pixels wide image
   bool has_edges = false;  // the image's edges are known
   double edge_share = 0.0;
-  double margin = 0.0;  // in log10 of the number of false alarms
+  EdgeEvidence edges{};
+  double shape_odds = 0.0;  // stretched_rival
+  double margin = 0.0;      // in log10 of the number of false alarms
 };
 
-// The terms whose weighted sum is the log odds of being right; the first is 1, the last 0 where the
-// image's edges are not known.
-inline constexpr std::size_t kConfidenceTerms = 7;
+// Of an image 640 pixels wide.
+RecognitionEvidence evidence_of(const MonoHypothesis& hypothesis, bool has_edges);
+
+// The terms whose weighted sum is the log odds of being right; the first is 1, those after
+// kPointTerms are 0 where the image's edges are not known.
+inline constexpr std::size_t kConfidenceTerms = 10, kPointTerms = 6;
 std::array<double, kConfidenceTerms> confidence_terms(const RecognitionEvidence& evidence);
 
 // The share of answers with this evidence that are right: a logistic function of the terms, with

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -83,7 +84,7 @@ Prepared prepare(const MonoCatalog& catalog, const RunContext& context) {
   parallel_chunks(made.size(), context.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::shared_ptr<const MonoModelRecord>& record = catalog.entries[i].record;
-      const SearchTables tables = tables_of(*record, quiet);
+      const SearchTables tables = tables_of(*record, quiet, QuadUse::kLeftOut);
       SearchModel model = prepare_model(record, tables);
       CornerModel corners = prepare_corners(model);
       made[i] = One{std::move(model), prepare_mirror(*record, tables), std::move(corners)};
@@ -117,7 +118,11 @@ class Recognizer::Impl {
         corner_models_(std::move(prepared.corners)),
         mirrors_(std::move(prepared.mirrors)),
         fours_(models_, context.threads),
-        index_(models_, context) {}
+        by_quads_(models_by_quads()),
+        index_(models_, context, by_quads_),
+        threads_(context.threads) {}
+  std::vector<char> models_by_quads() const;
+  const QuadIndex& all_quads() const;
   std::vector<char> wanted(const RecognizeOptions& options) const;
   bool search(const ImageView& image,
               std::span<const char> wanted,
@@ -131,8 +136,33 @@ class Recognizer::Impl {
   std::vector<CornerModel> corner_models_;  // as models_
   std::vector<SearchModel> mirrors_;        // of the models, in their order
   FourIndex fours_;
+  std::vector<char> by_quads_;  // by model: in index_
   QuadIndex index_;
+  int threads_ = 1;
+  mutable std::once_flag all_quads_made_;
+  mutable std::optional<QuadIndex> all_quads_;  // made when first asked for
 };
+
+// The models that are looked up by quads in images with links: those without edges, and those whose
+// linked fours are often flat.
+std::vector<char> Recognizer::Impl::models_by_quads() const {
+  std::vector<char> result(models_.size());
+  for (std::uint32_t i = 0; i < models_.size(); ++i)
+    result[i] = fours_.often_flat(i) || !is_linked(models_[i].model()) ? 1 : 0;
+  return result;
+}
+
+// An image without links has no fours: every model is looked up by quads then. They take longest to
+// make and most of the memory, 1.5 MB a model of twenty points, and most servers never see such an
+// image.
+const QuadIndex& Recognizer::Impl::all_quads() const {
+  std::call_once(all_quads_made_, [&] {
+    RunContext context;  // not the request's: a deadline that is too short would never let it end
+    context.threads = threads_;
+    all_quads_.emplace(models_, context);
+  });
+  return *all_quads_;
+}
 
 std::vector<char> Recognizer::Impl::wanted(const RecognizeOptions& options) const {
   std::vector<char> result(models_.size(), options.models.empty() ? 1 : 0);
@@ -154,7 +184,7 @@ bool Recognizer::Impl::search(const ImageView& image,
                               const RunContext& run,
                               CandidatePool& pool,
                               RecognizeTimings& timings) const {
-  bool any_linked = false, any_flat = false;
+  bool any_linked = false, any_flat = false, any_left_out = false;
   unsigned free_types = 0;
   std::vector<char> by_fours(models_.size(), 0), flat(models_.size(), 0);
   for (std::uint32_t i = 0; i < models_.size(); ++i) {
@@ -166,6 +196,7 @@ bool Recognizer::Impl::search(const ImageView& image,
       any_flat = any_flat || flat[i] != 0;
       continue;
     }
+    any_left_out = any_left_out || by_quads_[i] == 0;
     for (const ModelFeature& point : models_[i].model().points)
       free_types |= 1U << static_cast<unsigned>(point.type);
   }
@@ -208,7 +239,8 @@ bool Recognizer::Impl::search(const ImageView& image,
       quads = free_quads(image, free_types, kMostQuads);
     }
     const StageTimer timer(timings.verify);
-    complete = search_by_votes(models_, index_, image, quads.quads, votes, run, pool) &&
+    const QuadIndex& index = any_left_out ? all_quads() : index_;
+    complete = search_by_votes(models_, index, image, quads.quads, votes, run, pool) &&
                !quads.cut_short && complete;
   }
   return complete;

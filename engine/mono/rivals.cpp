@@ -16,7 +16,9 @@ namespace {
 constexpr std::size_t kSettled = 12;   // candidates that are brought to rest
 constexpr std::size_t kMirrored = 3;   // candidates that are held against mirror images
 constexpr std::size_t kMostKept = 24;  // that are remembered as rivals
-constexpr int kClimbs = 4;             // a grid of six is crossed in as many places, two at a time
+// log10 of false alarms: of more than this nothing is recognised, whatever else speaks for it.
+constexpr double kWorthJudging = 4.0;
+constexpr int kClimbs = 4;  // a grid of six is crossed in as many places, two at a time
 
 void sort_by_rank(std::vector<MonoCandidate>& candidates, std::size_t most) {
   std::stable_sort(
@@ -146,6 +148,7 @@ void settle_rivals(std::span<const SearchModel> models,
     run.check("refine");
     settle_twins(models, image, camera, candidates[i]);
     check.settle_on_edges(candidates[i]);
+    if (candidates[i].rank() < kWorthJudging) check.judge_shape(candidates[i]);
   }
   sort_by_rank(candidates, kMostKept);
   prefer_front(models, candidates);

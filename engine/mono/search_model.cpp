@@ -111,13 +111,13 @@ std::vector<PosePoint> pose_points(const MonoModel& model) {
   return points;
 }
 
-SearchTables tables_of(const MonoModelRecord& record, const RunContext& context) {
+SearchTables tables_of(const MonoModelRecord& record, const RunContext& context, QuadUse quads) {
   if (record.index) {
-    if (std::optional<SearchTables> tables = read_model_index(*record.index, record.model)) {
+    if (std::optional<SearchTables> tables = read_model_index(*record.index, record.model, quads)) {
       return std::move(*tables);
     }
   }
-  return make_search_tables(record.model, context);
+  return make_search_tables(record.model, context, quads);
 }
 
 SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record) {

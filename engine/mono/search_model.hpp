@@ -25,8 +25,8 @@ struct SearchModel {
   std::vector<char> joined;                            // n x n: whether an edge joins two points
   std::vector<std::vector<std::uint16_t>> seen;        // by view: the points seen from there
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double radius_m = 0.0;  // of a sphere around center that holds all points
-  std::vector<ChosenQuad> quads;
+  double radius_m = 0.0;                      // of a sphere around center that holds all points
+  std::vector<ChosenQuad> quads;              // empty where they were left out
   std::vector<ViewMask> outline_seen;         // SearchTables
   std::vector<Eigen::Isometry3d> lookalikes;  // SearchTables
 
@@ -39,7 +39,9 @@ struct SearchModel {
 std::vector<PosePoint> pose_points(const MonoModel& model);
 
 // From the record's own index where it has one that fits, and else from a new one.
-SearchTables tables_of(const MonoModelRecord& record, const RunContext& context = {});
+SearchTables tables_of(const MonoModelRecord& record,
+                       const RunContext& context = {},
+                       QuadUse quads = QuadUse::kWanted);
 
 SearchModel prepare_model(std::shared_ptr<const MonoModelRecord> record,
                           const SearchTables& tables);

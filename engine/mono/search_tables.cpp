@@ -78,6 +78,12 @@ class Reader {
     }
     return views;
   }
+  void skip_quad() {
+    at_ += std::min(left(), kLeastQuadBytes - 2);
+    const std::uint64_t views = number(1) + 1;
+    ended_ = ended_ || left() < views;
+    at_ += std::min<std::size_t>(left(), views);
+  }
   ChosenQuad quad() {
     ChosenQuad quad;
     for (std::uint16_t& id : quad.ids) id = static_cast<std::uint16_t>(number(2));
@@ -124,11 +130,11 @@ MonoModel mirror_image(const MonoModel& model) {
   return mirror;
 }
 
-SearchTables make_search_tables(const MonoModel& model, const RunContext& context) {
+SearchTables make_search_tables(const MonoModel& model, const RunContext& context, QuadUse quads) {
   SearchTables tables;
   tables.seen = views_of_points(model, "index", context);
   tables.mirror_seen = views_of_points(mirror_image(model), "index", context);
-  tables.quads = choose_quads(model, tables.seen);
+  if (quads == QuadUse::kWanted) tables.quads = choose_quads(model, tables.seen);
   tables.outline_seen = views_of_outline(model, context);
   tables.lookalikes = find_lookalikes(model, kLookalikeShare, kMostLookalikes);
   return tables;
@@ -161,7 +167,9 @@ ModelIndexBlob make_model_index(const MonoModel& model, const RunContext& contex
   return index;
 }
 
-std::optional<SearchTables> read_model_index(const ModelIndexBlob& index, const MonoModel& model) {
+std::optional<SearchTables> read_model_index(const ModelIndexBlob& index,
+                                             const MonoModel& model,
+                                             QuadUse use) {
   if (!index.is_made_like(model_index_format())) return std::nullopt;
   Reader reader(index.quads);
   const std::uint64_t points = reader.number(4), places = reader.number(4);
@@ -176,8 +184,12 @@ std::optional<SearchTables> read_model_index(const ModelIndexBlob& index, const 
   for (std::uint64_t i = 0; i < points; ++i) tables.seen.push_back(reader.mask());
   for (std::uint64_t i = 0; i < points; ++i) tables.mirror_seen.push_back(reader.mask());
   for (std::uint64_t i = 0; i < places; ++i) tables.outline_seen.push_back(reader.mask());
-  tables.quads.reserve(quads);
+  if (use == QuadUse::kWanted) tables.quads.reserve(quads);
   for (std::uint64_t i = 0; i < quads; ++i) {
+    if (use == QuadUse::kLeftOut) {
+      reader.skip_quad();
+      continue;
+    }
     tables.quads.push_back(reader.quad());
     if (!fits(tables.quads.back(), tables.seen)) return std::nullopt;
   }
@@ -191,6 +203,15 @@ std::optional<SearchTables> read_model_index(const ModelIndexBlob& index, const 
   }
   if (reader.ended() || reader.left() > 0) return std::nullopt;
   return tables;
+}
+
+std::vector<ChosenQuad> read_quads(const MonoModelRecord& record, const RunContext& context) {
+  if (record.index) {
+    if (std::optional<SearchTables> tables = read_model_index(*record.index, record.model)) {
+      return std::move(tables->quads);
+    }
+  }
+  return choose_quads(record.model, views_of_points(record.model, "index", context));
 }
 
 MonoModelRecord derive_record(MonoModel model, const RunContext& context) {

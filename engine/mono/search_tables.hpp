@@ -22,8 +22,13 @@ struct SearchTables {
   std::vector<Eigen::Isometry3d> lookalikes;
 };
 
+// Most models are looked up by their linked fours and need no quads, which are most of the bytes.
+enum class QuadUse { kWanted, kLeftOut };
+
 // Throws what `context.check` does.
-SearchTables make_search_tables(const MonoModel& model, const RunContext& context = {});
+SearchTables make_search_tables(const MonoModel& model,
+                                const RunContext& context = {},
+                                QuadUse quads = QuadUse::kWanted);
 
 // The tables as bytes, little-endian: the counts of points, outline places, quads and lookalikes as
 // 32-bit numbers; 32 bytes of views a point, twice, and a place, bit k % 8 of byte k / 8 for view
@@ -36,7 +41,12 @@ ModelIndexBlob model_index_format();
 
 // Nothing where the bytes are of another version or other params, or do not fit the model: they are
 // then made anew.
-std::optional<SearchTables> read_model_index(const ModelIndexBlob& index, const MonoModel& model);
+std::optional<SearchTables> read_model_index(const ModelIndexBlob& index,
+                                             const MonoModel& model,
+                                             QuadUse quads = QuadUse::kWanted);
+
+// The quads alone, from the record's own index where it has one that fits.
+std::vector<ChosenQuad> read_quads(const MonoModelRecord& record, const RunContext& context = {});
 
 // A record with all that is derived from its model: triples and index.
 MonoModelRecord derive_record(MonoModel model, const RunContext& context = {});

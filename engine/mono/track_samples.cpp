@@ -122,7 +122,7 @@ std::vector<TrackSample> track_samples(const MonoModel& model,
   }
   const double step_px = std::max(
       options.step_px, total_px / static_cast<double>(std::max<std::size_t>(options.most, 1)));
-  const Eigen::Vector3d eye = -(pose.R.transpose() * pose.t);
+  const PlaceSight sight(visibility, -(pose.R.transpose() * pose.t));
   std::vector<TrackSample> samples;
   for (std::size_t k = 0; k < curves.size(); ++k) {
     const double end_px = curves[k].circle ? 0.0 : options.end_px;
@@ -135,7 +135,7 @@ std::vector<TrackSample> track_samples(const MonoModel& model,
           lengths[k];
       std::optional<TrackSample> sample =
           sample_at(curves[k], share, camera, pose, options.border_px);
-      if (!sample || !visibility.place_seen_from(sample->xyz, eye)) continue;
+      if (!sample || !sight.sees(sample->xyz)) continue;
       sample->curve = static_cast<std::uint32_t>(k);
       samples.push_back(*sample);
     }

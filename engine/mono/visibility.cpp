@@ -123,11 +123,55 @@ ModelVisibility::ModelVisibility(const MonoModel& model)
     }
     faces_.push_back(std::move(face));
   }
+  convex_ = !faces_.empty() && std::all_of(faces_.begin(), faces_.end(), [&](const Face& face) {
+    return face.solid && std::all_of(points_.begin(), points_.end(), [&](const ModelFeature& p) {
+             return face.normal.dot(p.xyz) <= face.offset_m + clearance_m_;
+           });
+  });
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (points_[i].type == FeatureType::kCentroid && points_[i].part >= 0) {
       faces_of_[i] = {static_cast<std::uint32_t>(points_[i].part)};
     }
   }
+}
+
+PlaceSight::PlaceSight(const ModelVisibility& model, const Eigen::Vector3d& eye)
+    : model_(model), eye_(eye) {
+  for (std::uint32_t f = 0; f < model.faces_.size(); ++f) {
+    if (model.face_turned_to(f, eye)) {
+      hiding_.push_back(f);
+    } else if (model.convex_) {
+      away_.push_back(f);
+    }
+  }
+}
+
+bool PlaceSight::sees(const Eigen::Vector3d& place) const {
+  const auto on = [&](std::uint32_t f) {
+    const ModelVisibility::Face& face = model_.faces_[f];
+    return std::abs(face.normal.dot(place) - face.offset_m) <= model_.clearance_m_;
+  };
+  if (model_.convex_) {
+    if (std::any_of(hiding_.begin(), hiding_.end(), on)) return true;
+    if (std::any_of(away_.begin(), away_.end(), on)) return false;
+  }
+  const Eigen::Vector3d ray = eye_ - place;
+  const double distance_m = ray.norm();
+  if (!(distance_m > 0.0)) return false;
+  const double nearest = model_.clearance_m_ / distance_m;
+  for (const std::uint32_t f : hiding_) {
+    const ModelVisibility::Face& face = model_.faces_[f];
+    const double slope = face.normal.dot(ray), over = face.offset_m - face.normal.dot(place);
+    // Between place and eye: over / slope in (nearest, 1).
+    if (slope > 0.0 ? over <= nearest * slope || over >= slope
+                    : over >= nearest * slope || over <= slope) {
+      continue;
+    }
+    if (std::abs(slope) < 1e-9 * distance_m) continue;  // seen edge-on: hides nothing
+    const Eigen::Vector3d hit = place + over / slope * ray;
+    if (inside(face.outline, {hit[face.axes[0]], hit[face.axes[1]]})) return false;
+  }
+  return true;
 }
 
 bool ModelVisibility::hidden(const Eigen::Vector3d& place,

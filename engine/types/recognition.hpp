@@ -20,6 +20,14 @@ struct MonoPair {
   double residual_px = 0.0;  // distance in the image, lens distortion included
 };
 
+// How a model's edges at a pose lie on the image's, beyond how much of them does. Chance agreement
+// comes in pieces, with the bright side now left, now right, on lines that go straight on past the
+// model's corners.
+struct EdgeEvidence {
+  double whole = 0.0;    // share of the visible edges on image edges of one bright side, as long
+  double overrun = 0.0;  // share of the edges' ends past which the image's edge goes straight on
+};
+
 // One model at one pose in the image.
 struct MonoHypothesis {
   std::string model;
@@ -34,6 +42,8 @@ struct MonoHypothesis {
   double log10_nfa = 0.0;   // number of false alarms (Moisan & Stival 2004)
   double edge_share = 0.0;  // of the visible edges' length, what lies on edges of the image
   double margin = 0.0;      // to the best rival: another model, or another pose of this one
+  EdgeEvidence edges{};
+  double shape_odds = 0.0;
   std::string symmetry = "none";
   bool ambiguous = false;  // a second pose of a plane explains the points about as well
   std::vector<MonoPair> pairs{};

@@ -90,6 +90,22 @@ TEST(PoseCheck, EdgesElsewhereSpeakAgainstIt) {
   EXPECT_GT(candidate->edge_odds, 1.0);
 }
 
+TEST(PoseCheck, TellsWhetherEdgesRunAsTheModelsDo) {
+  Looked looked(Looked::make_scene(true));
+  std::optional<MonoCandidate> right = looked.settled();
+  ASSERT_TRUE(right);
+  looked.check.judge_shape(*right);
+  EXPECT_GT(right->edges.whole, 0.6);
+  EXPECT_LT(right->edges.overrun, 0.2);
+  MonoScene scene = Looked::make_scene(true);
+  for (EdgePoint& edge : scene.features.edges) edge.uv *= 0.01F;  // all in a corner
+  Looked elsewhere(scene);
+  std::optional<MonoCandidate> wrong = elsewhere.settled();
+  ASSERT_TRUE(wrong);
+  elsewhere.check.judge_shape(*wrong);
+  EXPECT_EQ(wrong->edges.whole, 0.0);
+}
+
 TEST(PoseCheck, WithoutEdgesTheyHaveNoSay) {
   Looked looked(Looked::make_scene(false));
   const std::optional<MonoCandidate> candidate = looked.settled();

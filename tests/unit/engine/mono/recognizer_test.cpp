@@ -7,7 +7,9 @@
 #include <limits>
 #include <numbers>
 #include <set>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -16,7 +18,9 @@
 #include "engine/base/random.hpp"
 #include "engine/geometry/pose.hpp"
 #include "engine/mono/mirror_rival.hpp"
+#include "engine/mono/read_model.hpp"
 #include "engine/mono/search_model.hpp"
+#include "engine/mono/search_tables.hpp"
 #include "tests/support/make_mono_scene.hpp"
 
 namespace landmarkdb {
@@ -120,6 +124,96 @@ TEST(Recognizer, GivesTheSameAnswerTwice) {
               other.hypotheses[i].T_camera_object.matrix());
     EXPECT_EQ(one.hypotheses[i].confidence, other.hypotheses[i].confidence);
   }
+}
+
+TEST(Recognizer, DoesNotDependOnTheOrderOfTheFeatures) {
+  const MonoModelRecord& record = *catalog()->entries[3].record;
+  const MonoScene scene = make_mono_scene(&record, {.seed = 77, .features = 40, .missing = 0.1});
+  const RecognizeResult before = ask(scene);
+  ASSERT_EQ(before.status, RecognizeStatus::kRecognized);
+  MonoScene turned = scene;
+  const std::uint32_t n = static_cast<std::uint32_t>(scene.features.points.size());
+  for (std::uint32_t i = 0; i < n; ++i) {
+    turned.features.points[(7 * i + 3) % n] = scene.features.points[i];
+  }
+  for (auto& [a, b] : turned.features.links) {
+    a = (7 * a + 3) % n;
+    b = (7 * b + 3) % n;
+    if (a > b) std::swap(a, b);
+  }
+  const RecognizeResult after = ask(turned);
+  ASSERT_EQ(after.status, RecognizeStatus::kRecognized);
+  EXPECT_EQ(after.hypotheses[0].model, before.hypotheses[0].model);
+  EXPECT_EQ(after.hypotheses[0].pairs.size(), before.hypotheses[0].pairs.size());
+  EXPECT_TRUE(
+      after.hypotheses[0].T_camera_object.isApprox(before.hypotheses[0].T_camera_object, 1e-6));
+}
+
+// Of a pinhole an image of twice the size is the same image, with tolerances that grow with it.
+TEST(Recognizer, FindsTheSamePoseInAScaledImage) {
+  const MonoModelRecord& record = *catalog()->entries[3].record;
+  MonoScene scene = make_mono_scene(&record, {.seed = 77, .features = 40, .missing = 0.1});
+  const RecognizeResult before = ask(scene);
+  for (ImageFeature& feature : scene.features.points) {
+    feature.uv *= 2.0;
+    feature.sigma_px *= 2.0;
+  }
+  scene.camera.width = scene.features.width = 2 * scene.features.width;
+  scene.camera.height = scene.features.height = 2 * scene.features.height;
+  for (double* x : {&scene.camera.fx, &scene.camera.fy, &scene.camera.cx, &scene.camera.cy})
+    *x *= 2.0;
+  const RecognizeResult after = ask(scene);
+  ASSERT_EQ(before.status, RecognizeStatus::kRecognized);
+  ASSERT_EQ(after.status, RecognizeStatus::kRecognized);
+  EXPECT_EQ(after.hypotheses[0].model, before.hypotheses[0].model);
+  const Eigen::Isometry3d off =
+      before.hypotheses[0].T_camera_object.inverse() * after.hypotheses[0].T_camera_object;
+  EXPECT_LT(rotation_angle_rad(off.linear()), 0.2 * kDegree);
+  EXPECT_LT(off.translation().norm(), 2e-3);
+}
+
+TEST(Recognizer, TellsASymmetricModelOnce) {
+  const std::string text =
+      R"({"name": "brick", "units": "m", "points": [[0,0,0],[0.12,0,0],[0.12,0.09,0],[0,0.09,0],
+      [0,0,0.06],[0.12,0,0.06],[0.12,0.09,0.06],[0,0.09,0.06]],
+      "faces": [[3,2,1,0],[4,5,6,7],[0,1,5,4],[1,2,6,5],[2,3,7,6],[3,0,4,7]]})";
+  auto record = std::make_shared<MonoModelRecord>(
+      derive_record(parse_model(std::as_bytes(std::span(text)), "brick.json", {}).model));
+  ASSERT_GE(record->model.symmetries.size(), 4U);
+  auto one = std::make_shared<MonoCatalog>();
+  one->entries.push_back({1, record, {}});
+  const Recognizer bricks(one);
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const MonoScene scene = make_mono_scene(
+        record.get(), {.seed = seed, .features = 14, .noise_px = 0.3, .missing = 0.0});
+    const RecognizeResult result = bricks.recognize(scene.features, scene.camera, {.top = 10}, {});
+    if (result.status != RecognizeStatus::kRecognized) continue;
+    ++found;
+    for (std::size_t i = 1; i < result.hypotheses.size(); ++i)
+      EXPECT_LT(result.hypotheses[i].confidence, 0.5) << seed;
+  }
+  EXPECT_GE(found, 3);
+}
+
+// Quads of most models are made only for such an image.
+TEST(Recognizer, FindsModelsInAnImageWithoutLinks) {
+  const Recognizer fresh(catalog());
+  int asked = 0, right = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const MonoModelRecord& record = *catalog()->entries[seed % catalog()->entries.size()].record;
+    const MonoScene scene =
+        make_mono_scene(&record, {.seed = seed, .features = 24, .missing = 0.1, .links = false});
+    const RecognizeResult result = fresh.recognize(scene.features, scene.camera, {}, {});
+    if (scene.true_features < 8) continue;
+    ++asked;
+    right +=
+        !result.hypotheses.empty() && is_right(result.hypotheses[0], record.model.name, scene.truth)
+            ? 1
+            : 0;
+  }
+  EXPECT_GE(asked, 5);
+  EXPECT_GE(right, asked * 7 / 10) << "of " << asked;
 }
 
 TEST(Recognizer, LooksForTheNamedModelsOnly) {

@@ -125,11 +125,37 @@ TEST(SearchTables, LeadToTheSameSearchModelStoredOrNot) {
     EXPECT_EQ(a.seen, b.seen);
     EXPECT_EQ(prepare_mirror(*stored, tables_of(*stored)).seen,
               prepare_mirror(*bare, tables_of(*bare)).seen);
-    const std::vector<ModelQuad> qa = quads_of(a, 0), qb = quads_of(b, 0);
+    const std::vector<ModelQuad> qa = quads_of(a, 0, a.quads), qb = quads_of(b, 0, b.quads);
     ASSERT_EQ(qa.size(), qb.size());
     EXPECT_TRUE(std::equal(qa.begin(), qa.end(), qb.begin(), [](const auto& x, const auto& y) {
       return x.view == y.view && x.ids == y.ids && x.code == y.code && x.links == y.links;
     }));
+  }
+}
+
+TEST(SearchTables, CanLeaveOutTheQuadsAndReadThemLater) {
+  for (const MonoModel& model : models()) {
+    const auto stored = std::make_shared<const MonoModelRecord>(derive_record(model));
+    for (const auto& record :
+         {stored, std::make_shared<const MonoModelRecord>(MonoModelRecord{model})}) {
+      const SearchTables all = tables_of(*record);
+      const SearchTables some = tables_of(*record, {}, QuadUse::kLeftOut);
+      EXPECT_TRUE(some.quads.empty());
+      EXPECT_EQ(some.seen, all.seen);
+      EXPECT_EQ(some.lookalikes.size(), all.lookalikes.size());
+      const std::vector<ChosenQuad> later = read_quads(*record);
+      ASSERT_EQ(later.size(), all.quads.size());
+      for (std::size_t i = 0; i < later.size(); ++i) {
+        EXPECT_EQ(later[i].ids, all.quads[i].ids);
+        EXPECT_EQ(later[i].views, all.quads[i].views);
+      }
+    }
+    ModelIndexBlob cut = *stored->index;
+    for (std::size_t length = 16; length < cut.quads.size(); length = length * 3 / 2) {
+      cut.quads.resize(length);
+      EXPECT_FALSE(read_model_index(cut, model, QuadUse::kLeftOut)) << length;
+      cut = *stored->index;
+    }
   }
 }
 

@@ -70,6 +70,41 @@ TEST(Visibility, FacesInFrontHide) {
   EXPECT_FALSE(tiles.place_seen_from({0.1, 0, 0}, {0, 0, 5}));
 }
 
+// A box, a stair (faces hide its own edges) and two sheets, along their edges from all around.
+TEST(PlaceSight, SeesWhatTheVisibilitySays) {
+  const std::vector<MonoModel> models{
+      read_text(box_json(), "box.json").model,
+      read_text(R"({"points": [[0,0,0],[2,0,0],[2,1,0],[1,1,0],[1,2,0],[0,2,0],
+          [0,0,1],[2,0,1],[2,1,1],[1,1,1],[1,2,1],[0,2,1]],
+          "faces": [[5,4,3,2,1,0],[6,7,8,9,10,11],[0,1,7,6],[1,2,8,7],[2,3,9,8],[3,4,10,9],
+          [4,5,11,10],[5,0,6,11]]})",
+                "stair.json")
+          .model,
+      read_text(R"({"points": [[-1,-1,0],[1,-1,0],[1,1,0],[-1,1,0],[-0.2,-0.2,1],[0.2,-0.2,1],
+          [0.2,0.2,1],[-0.2,0.2,1]], "faces": [[0,1,2,3],[4,5,6,7]]})",
+                "tiles.json")
+          .model};
+  for (const MonoModel& model : models) {
+    const ModelVisibility visibility(model);
+    int asked = 0, other = 0, hidden = 0;
+    for (const Eigen::Vector3d& view : model_views()) {
+      const Eigen::Vector3d eye = model.points[0].xyz + 6.0 * model.diameter_m * view;
+      const PlaceSight sight(visibility, eye);
+      for (const auto& [a, b] : model.edges) {
+        for (const double at : {0.13, 0.5, 0.87}) {
+          const Eigen::Vector3d place = (1.0 - at) * model.points[a].xyz + at * model.points[b].xyz;
+          const bool seen = visibility.place_seen_from(place, eye);
+          ++asked;
+          hidden += seen ? 0 : 1;
+          other += sight.sees(place) == seen ? 0 : 1;
+        }
+      }
+    }
+    EXPECT_GT(asked, 1000);
+    EXPECT_LE(other, asked / 500) << model.name << ": " << hidden << " hidden of " << asked;
+  }
+}
+
 TEST(Visibility, ANormalIsSeenToALittlePastTheHorizon) {
   const ModelVisibility model(read_text(R"({"points": [{"xyz":[0,0,0],"normal":[0,0,1]},
       [0.1,0,0],[0,0.1,0],[0,0,0.1]]})",
