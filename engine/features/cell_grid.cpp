@@ -80,6 +80,10 @@ CellGrid::CellGrid(std::span<const Eigen::Vector3f> points, double cell_m) : cel
   z_.reserve(points.size());
   for (const auto& [key, index] : sorted) {
     if (keys_.empty() || keys_.back() != key) {
+      if (columns_.empty() || columns_.back() != key >> kBits) {
+        columns_.push_back(key >> kBits);
+        column_start_.push_back(static_cast<std::uint32_t>(keys_.size()));
+      }
       keys_.push_back(key);
       start_.push_back(static_cast<std::uint32_t>(order_.size()));
     }
@@ -89,6 +93,7 @@ CellGrid::CellGrid(std::span<const Eigen::Vector3f> points, double cell_m) : cel
     z_.push_back(points[index].z());
   }
   start_.push_back(static_cast<std::uint32_t>(order_.size()));
+  column_start_.push_back(static_cast<std::uint32_t>(keys_.size()));
 }
 
 std::array<std::int64_t, 3> CellGrid::cell_of(const Eigen::Vector3d& p) const {
@@ -102,9 +107,10 @@ std::array<std::int64_t, 3> CellGrid::cell_of(const Eigen::Vector3d& p) const {
   return cell;
 }
 
-std::uint32_t CellGrid::first_place(std::uint64_t key) const {
-  const auto it = std::lower_bound(keys_.begin(), keys_.end(), key);
-  return start_[static_cast<std::size_t>(it - keys_.begin())];
+std::uint32_t CellGrid::first_place(std::size_t column, std::uint64_t key) const {
+  const auto begin = keys_.begin() + static_cast<std::ptrdiff_t>(column_start_[column]);
+  const auto end = keys_.begin() + static_cast<std::ptrdiff_t>(column_start_[column + 1]);
+  return start_[static_cast<std::size_t>(std::lower_bound(begin, end, key) - keys_.begin())];
 }
 
 void CellGrid::runs(const Eigen::Vector3f& query, float radius_m, std::vector<Run>& out) const {
@@ -119,10 +125,18 @@ void CellGrid::runs(const Eigen::Vector3f& query, float radius_m, std::vector<Ru
     low[axis] = std::max<std::int64_t>(low[axis], 0);
     high[axis] = std::min(high[axis], last_[axis]);
   }
+  // Along y the columns lie side by side, and each is a cell or two of a surface: one search among
+  // all columns for each x, and a short one in each column.
   for (std::int64_t cx = low[0]; cx <= high[0]; ++cx) {
-    for (std::int64_t cy = low[1]; cy <= high[1]; ++cy) {
-      const Run run{first_place(pack_cell(cx, cy, low[2])),
-                    first_place(pack_cell(cx, cy, high[2]) + 1)};
+    const std::uint64_t last = pack_cell(cx, high[1], 0) >> kBits;
+    const auto first =
+        std::lower_bound(columns_.begin(), columns_.end(), pack_cell(cx, low[1], 0) >> kBits);
+    for (auto column = static_cast<std::size_t>(first - columns_.begin());
+         column < columns_.size() && columns_[column] <= last;
+         ++column) {
+      const std::uint64_t key = columns_[column] << kBits;
+      const Run run{first_place(column, key | static_cast<std::uint64_t>(low[2])),
+                    first_place(column, (key | static_cast<std::uint64_t>(high[2])) + 1)};
       if (run.begin < run.end) out.push_back(run);
     }
   }

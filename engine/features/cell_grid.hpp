@@ -49,7 +49,8 @@ class CellGrid {
 
  private:
   std::array<std::int64_t, 3> cell_of(const Eigen::Vector3d& p) const;
-  std::uint32_t first_place(std::uint64_t key) const;  // of the first cell whose key is not less
+  // The first place of the column's first cell whose key is not less.
+  std::uint32_t first_place(std::size_t column, std::uint64_t key) const;
 
   Eigen::Vector3d min_ = Eigen::Vector3d::Zero();
   double cell_m_ = 0.0;
@@ -58,6 +59,8 @@ class CellGrid {
   std::vector<float> x_, y_, z_;
   std::vector<std::uint64_t> keys_;   // of the occupied cells, ascending
   std::vector<std::uint32_t> start_;  // first place of each, and the number of points at the end
+  std::vector<std::uint64_t> columns_;       // (x, y) of those cells, once each, ascending
+  std::vector<std::uint32_t> column_start_;  // first cell of each, and their number at the end
 };
 
 // The cell of each point, packed x-y-z into 64 bits, 21 bits an axis, counted from the cloud's
