@@ -34,8 +34,8 @@ CatalogEntry index_object(const datasets::ObjectModel& model,
   CatalogEntry entry;
   entry.scene_id = static_cast<std::int64_t>(number) + 1;
   entry.version = 1;
-  entry.record = std::make_shared<SceneRecord>(
-      describe_scene(model.name, std::move(scans), options, context));
+  entry.record =
+      std::make_shared<SceneRecord>(describe_scene(model.name, std::move(scans), options, context));
   return entry;
 }
 

@@ -34,14 +34,14 @@ JudgedHypothesis judge_hypothesis(const Hypothesis& hypothesis, const AskedScene
     if (thing.model >= asked.known || model.name != hypothesis.scene) continue;
     const auto error = datasets::object_error(model, thing.T_scene_object, estimate);
     if (error.metres > judged.metres) continue;
-    judged = {.right = within(error.metres, error.degrees, model.extent_m),
-              .right_symmetric =
-                  within(error.symmetric_metres, error.symmetric_degrees, model.extent_m),
-              .metres = error.metres,
-              .degrees = error.degrees,
-              .unhidden = thing.unhidden,
-              .pixels = thing.pixels,
-              .thing = i};
+    judged = {
+        .right = within(error.metres, error.degrees, model.extent_m),
+        .right_symmetric = within(error.symmetric_metres, error.symmetric_degrees, model.extent_m),
+        .metres = error.metres,
+        .degrees = error.degrees,
+        .unhidden = thing.unhidden,
+        .pixels = thing.pixels,
+        .thing = i};
   }
   return judged;
 }

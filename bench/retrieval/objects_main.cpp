@@ -45,8 +45,7 @@ void print_row(const QueryResult& answer,
                int number) {
   const bool any = rank < answer.hypotheses.size();
   const Hypothesis hypothesis = any ? answer.hypotheses[rank] : Hypothesis{};
-  const JudgedHypothesis judged =
-      any ? judge_hypothesis(hypothesis, asked) : JudgedHypothesis{};
+  const JudgedHypothesis judged = any ? judge_hypothesis(hypothesis, asked) : JudgedHypothesis{};
   const Fit& fit = hypothesis.fit;
   std::printf("%.*s,%d,%.4f,%d,%d,%.4f,%.3f,%.3f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,",
               static_cast<int>(catalog.size()),
@@ -107,7 +106,8 @@ int run(const Settings& settings) {
       query.top = settings.top;
       const QueryResult answer = localizer.query(asked.scene.frame.cloud, query, context);
       tally.add(answer, asked);
-      const std::size_t rows = settings.all ? std::max<std::size_t>(answer.hypotheses.size(), 1) : 1;
+      const std::size_t rows =
+          settings.all ? std::max<std::size_t>(answer.hypotheses.size(), 1) : 1;
       for (std::size_t h = 0; h < rows; ++h) print_row(answer, h, asked, name, s);
       if (settings.funnel) {
         std::printf("%s", object_funnel_text(objects, asked, query, context).c_str());

@@ -36,20 +36,48 @@ void build(const ObjectOptions& options, ObjectModel& model) {
   const Workshop shop{model.mesh, random};
   const Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   switch (options.kind) {
-    case ObjectKind::kFigurine: add_figurine(shop); break;
-    case ObjectKind::kAnimal: add_animal(shop); break;
-    case ObjectKind::kCarton: add_carton(shop); break;
-    case ObjectKind::kMilkCarton: add_milk_carton(shop); break;
-    case ObjectKind::kBottle: add_bottle(shop); break;
-    case ObjectKind::kSprayBottle: add_spray_bottle(shop); break;
-    case ObjectKind::kMug: add_mug(shop); break;
-    case ObjectKind::kTool: add_tool(shop); break;
-    case ObjectKind::kTrain: add_train(shop); break;
-    case ObjectKind::kChair: add_office_chair(shop, T); break;
-    case ObjectKind::kPlant: add_plant(shop, T); break;
-    case ObjectKind::kStatue: add_statue(shop, T, random.uniform(0.9, 1.7)); break;
-    case ObjectKind::kBin: add_bin(shop, T); break;
-    case ObjectKind::kVending: add_vending_machine(shop, T); break;
+    case ObjectKind::kFigurine:
+      add_figurine(shop);
+      break;
+    case ObjectKind::kAnimal:
+      add_animal(shop);
+      break;
+    case ObjectKind::kCarton:
+      add_carton(shop);
+      break;
+    case ObjectKind::kMilkCarton:
+      add_milk_carton(shop);
+      break;
+    case ObjectKind::kBottle:
+      add_bottle(shop);
+      break;
+    case ObjectKind::kSprayBottle:
+      add_spray_bottle(shop);
+      break;
+    case ObjectKind::kMug:
+      add_mug(shop);
+      break;
+    case ObjectKind::kTool:
+      add_tool(shop);
+      break;
+    case ObjectKind::kTrain:
+      add_train(shop);
+      break;
+    case ObjectKind::kChair:
+      add_office_chair(shop, T);
+      break;
+    case ObjectKind::kPlant:
+      add_plant(shop, T);
+      break;
+    case ObjectKind::kStatue:
+      add_statue(shop, T, random.uniform(0.9, 1.7));
+      break;
+    case ObjectKind::kBin:
+      add_bin(shop, T);
+      break;
+    case ObjectKind::kVending:
+      add_vending_machine(shop, T);
+      break;
   }
 }
 

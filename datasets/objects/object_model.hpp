@@ -82,8 +82,8 @@ enum class ObjectViews {
 
 struct ObjectScanOptions {
   ObjectViews views = ObjectViews::kAround;
-  double spacing_m = 0.0;     // between points of one view; 0: a hundredth of the extent
-  double noise_m = 0.0005;    // standard deviation along the ray
+  double spacing_m = 0.0;       // between points of one view; 0: a hundredth of the extent
+  double noise_m = 0.0005;      // standard deviation along the ray
   bool keep_viewpoints = true;  // false: as models are passed on, without where they were seen from
   std::uint64_t seed = 1;
 };

@@ -16,10 +16,10 @@ namespace {
 
 // What differs between a table top and a floor.
 struct Setting {
-  double top_m;                     // height of the surface
-  double reach_m;                   // things stand this far from the middle at most
-  double nearest_m, farthest_m;     // of the camera from the middle
-  double lowest_rad, highest_rad;   // its elevation
+  double top_m;                    // height of the surface
+  double reach_m;                  // things stand this far from the middle at most
+  double nearest_m, farthest_m;    // of the camera from the middle
+  double lowest_rad, highest_rad;  // its elevation
 };
 constexpr Setting kTable = {0.74, 0.5, 0.75, 1.5, 0.30, 1.0};
 constexpr Setting kFloor = {0.0, 2.2, 2.2, 4.2, 0.12, 0.6};
@@ -31,9 +31,9 @@ struct Laid {
 };
 
 Laid lay(const ObjectModel& model, bool lying, Random& random) {
-  Eigen::Matrix3d R = Eigen::AngleAxisd(random.uniform(0.0, 2.0 * std::numbers::pi),
-                                        Eigen::Vector3d::UnitZ())
-                          .matrix();
+  Eigen::Matrix3d R =
+      Eigen::AngleAxisd(random.uniform(0.0, 2.0 * std::numbers::pi), Eigen::Vector3d::UnitZ())
+          .matrix();
   if (lying) {
     const double around = random.uniform(0.0, 2.0 * std::numbers::pi);
     R = R * Eigen::AngleAxisd(0.5 * std::numbers::pi,
@@ -139,8 +139,8 @@ std::vector<std::size_t> shown(const RayCaster& caster,
           (static_cast<double>(kStep * (i % columns)) - camera.cx) / camera.fx,
           (static_cast<double>(kStep * (i / columns)) - camera.cy) / camera.fy,
           1.0);
-      const auto hit = caster.first_hit(
-          eye, (T_scene_camera.linear() * ray.normalized()).cast<float>(), 20.0F);
+      const auto hit =
+          caster.first_hit(eye, (T_scene_camera.linear() * ray.normalized()).cast<float>(), 20.0F);
       if (!hit) continue;
       const auto thing = std::upper_bound(ends.begin(), ends.end(), hit->triangle);
       if (thing != ends.end()) what[i] = static_cast<std::size_t>(thing - ends.begin()) + 1;
@@ -166,8 +166,7 @@ void measure_visible(const std::vector<const ObjectModel*>& models,
     const auto seen = std::count(all.begin(), all.end(), i + 1);
     const auto could = std::count(by_itself.begin(), by_itself.end(), std::size_t{1});
     thing.pixels = kPixelsEach * static_cast<std::size_t>(seen);
-    thing.unhidden =
-        could == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(could);
+    thing.unhidden = could == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(could);
   }
 }
 

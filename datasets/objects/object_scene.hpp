@@ -33,13 +33,13 @@ struct ObjectSceneOptions {
 struct Standing {
   std::size_t model = 0;  // index into the models given
   Eigen::Isometry3d T_scene_object = Eigen::Isometry3d::Identity();
-  std::size_t pixels = 0;        // that show it, of a camera of 640 x 480
-  double unhidden = 0.0;         // share of those that would were it alone
+  std::size_t pixels = 0;  // that show it, of a camera of 640 x 480
+  double unhidden = 0.0;   // share of those that would were it alone
 };
 
 // A table or a floor with things on it, seen once.
 struct ObjectScene {
-  Place place;  // mesh and caster alone
+  Place place;                   // mesh and caster alone
   std::vector<Standing> things;  // in the order of `models`; what found no room is left out
   DepthFrame frame;
 };

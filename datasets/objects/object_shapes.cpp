@@ -27,9 +27,8 @@ void add_ball(Workshop shop, const Eigen::Vector3d& centre, const Eigen::Vector3
 void add_wheel(Workshop shop, const Eigen::Vector3d& hub, double radius, double width) {
   const std::array<Eigen::Vector2d, 2> profile = {Eigen::Vector2d(radius, -0.5 * width),
                                                   Eigen::Vector2d(radius, 0.5 * width)};
-  const Eigen::Isometry3d T =
-      at(hub.x(), hub.y(), hub.z()) *
-      Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitX());
+  const Eigen::Isometry3d T = at(hub.x(), hub.y(), hub.z()) *
+                              Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitX());
   add_revolution(shop.mesh, T, profile, kRound);
 }
 
@@ -51,10 +50,11 @@ void add_figurine(Workshop shop) {
   const Eigen::Vector3d neck(h * random.uniform(-0.04, 0.04), -0.03 * h, 0.78 * h);
   add_ball(shop, neck, {head, head, 1.15 * head});
   add_ball(shop, neck + Eigen::Vector3d(0, -head, 0), {0.3 * head, 0.4 * head, 0.3 * head});
-  const std::array<Eigen::Vector2d, 4> hat = {Eigen::Vector2d(head * random.uniform(1.0, 1.5), 0.0),
-                                              Eigen::Vector2d(0.8 * head, 0.2 * head),
-                                              Eigen::Vector2d(head * random.uniform(0.3, 1.1), head),
-                                              Eigen::Vector2d(0.1 * head, 1.2 * head)};
+  const std::array<Eigen::Vector2d, 4> hat = {
+      Eigen::Vector2d(head * random.uniform(1.0, 1.5), 0.0),
+      Eigen::Vector2d(0.8 * head, 0.2 * head),
+      Eigen::Vector2d(head * random.uniform(0.3, 1.1), head),
+      Eigen::Vector2d(0.1 * head, 1.2 * head)};
   add_revolution(shop.mesh, at(neck.x(), neck.y(), neck.z() + 0.6 * head), hat, kRound);
   for (const double side : {-1.0, 1.0}) {
     const Eigen::Vector3d shoulder(side * 0.9 * wide, 0, 0.62 * h);
@@ -84,18 +84,21 @@ void add_animal(Workshop shop) {
     }
   }
   const Eigen::Vector3d head =
-      body + Eigen::Vector3d(0.58 * l, l * random.uniform(-0.1, 0.1), l * random.uniform(0.05, 0.3));
+      body +
+      Eigen::Vector3d(0.58 * l, l * random.uniform(-0.1, 0.1), l * random.uniform(0.05, 0.3));
   const double skull = l * random.uniform(0.12, 0.17);
   add_rod(shop.mesh, at(0, 0), body + Eigen::Vector3d(0.3 * l, 0, 0), head, 0.6 * skull);
   add_ball(shop, head, {1.3 * skull, 0.9 * skull, skull});
   for (const double y : {-0.7, 0.7}) {
     const double ear = skull * random.uniform(0.5, 1.3);
-    add_ball(shop, head + Eigen::Vector3d(-0.3 * skull, y * skull, skull), {0.3 * ear, 0.5 * ear, ear});
+    add_ball(
+        shop, head + Eigen::Vector3d(-0.3 * skull, y * skull, skull), {0.3 * ear, 0.5 * ear, ear});
   }
   add_rod(shop.mesh,
           at(0, 0),
           body + Eigen::Vector3d(-0.4 * l, 0, 0.2 * fat),
-          body + Eigen::Vector3d(-0.7 * l, l * random.uniform(-0.1, 0.1), l * random.uniform(-0.2, 0.4)),
+          body + Eigen::Vector3d(
+                     -0.7 * l, l * random.uniform(-0.1, 0.1), l * random.uniform(-0.2, 0.4)),
           0.04 * l);
 }
 
@@ -103,9 +106,7 @@ void add_carton(Workshop shop) {
   begin_object(shop.mesh, "carton");
   Random& random = shop.random;
   const double a = random.uniform(0.05, 0.12);
-  add_box(shop.mesh,
-          at(0, 0),
-          {a, a * random.uniform(1.3, 1.8), a * random.uniform(2.1, 2.8)});
+  add_box(shop.mesh, at(0, 0), {a, a * random.uniform(1.3, 1.8), a * random.uniform(2.1, 2.8)});
 }
 
 void add_milk_carton(Workshop shop) {
@@ -231,7 +232,9 @@ void add_train(Workshop shop) {
   const double wheel = l * random.uniform(0.09, 0.13);
   add_box(shop.mesh, at(0, 0, wheel), {l, w, 0.12 * l});
   const double cab = l * random.uniform(0.25, 0.38);
-  add_box(shop.mesh, at(-0.5 * (l - cab), 0, wheel + 0.12 * l), {cab, w, l * random.uniform(0.3, 0.45)});
+  add_box(shop.mesh,
+          at(-0.5 * (l - cab), 0, wheel + 0.12 * l),
+          {cab, w, l * random.uniform(0.3, 0.45)});
   const double boiler = 0.5 * w * random.uniform(0.7, 0.95);
   const std::array<Eigen::Vector2d, 3> tank = {Eigen::Vector2d(boiler, 0.0),
                                                Eigen::Vector2d(boiler, l - cab - 0.05 * l),

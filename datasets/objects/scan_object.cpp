@@ -20,8 +20,7 @@ std::vector<Eigen::Vector3d> directions_of(ObjectViews views) {
     for (double azimuth = first; azimuth < last; azimuth += step) {
       const double e = elevation * kDegree;
       const double a = (azimuth - 90.0) * kDegree;
-      directions.emplace_back(
-          std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+      directions.emplace_back(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
     }
   };
   if (views == ObjectViews::kFront) {
@@ -58,7 +57,8 @@ PointCloud scan_object(const ObjectModel& model,
         const auto offset = [&](std::size_t k) {
           return (static_cast<double>(k) - 0.5 * static_cast<double>(side)) * spacing_m;
         };
-        const Eigen::Vector3d aim = model.centre + offset(i % side) * right + offset(i / side) * down;
+        const Eigen::Vector3d aim =
+            model.centre + offset(i % side) * right + offset(i / side) * down;
         const Eigen::Vector3f ray = (aim - eye).normalized().cast<float>();
         const auto hit = caster.first_hit(
             eye.cast<float>(), ray, static_cast<float>(2.0 * kAway * model.extent_m));

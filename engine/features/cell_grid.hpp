@@ -57,9 +57,9 @@ class CellGrid {
   std::array<std::int64_t, 3> last_{};  // the highest cell on each axis
   std::vector<std::uint32_t> order_;
   std::vector<float> x_, y_, z_;
-  std::vector<std::uint64_t> keys_;   // of the occupied cells, ascending
-  std::vector<std::uint32_t> start_;  // first place of each, and the number of points at the end
-  std::vector<std::uint64_t> columns_;       // (x, y) of those cells, once each, ascending
+  std::vector<std::uint64_t> keys_;     // of the occupied cells, ascending
+  std::vector<std::uint32_t> start_;    // first place of each, and the number of points at the end
+  std::vector<std::uint64_t> columns_;  // (x, y) of those cells, once each, ascending
   std::vector<std::uint32_t> column_start_;  // first cell of each, and their number at the end
 };
 

@@ -18,6 +18,7 @@ namespace {
 constexpr double kCellsPerRadius = 2.0;  // as in describe_shot
 constexpr std::size_t kBlock = 256;      // points between two looks at the stop request
 constexpr std::size_t kFewestOfBin = 50;
+constexpr std::size_t kLooked = 25'000;  // points the noise is taken from, of clouds twice as large
 constexpr double kMostWider = 3.0;  // times the normals' radius: the widest neighbourhood looked at
 constexpr double kFlattest = 0.25;  // share of a bin's points that are taken for planar
 
@@ -117,21 +118,22 @@ RangeNoise measure_range_noise(const PreparedCloud& cloud,
   noise.first_range_m = 10.0 * cloud.resolution_m;
   if (cloud.viewpoints.empty()) return noise;
   const CellGrid grid(cloud.points, radius_m / kCellsPerRadius);
-  std::vector<float> sigma(cloud.size());
-  parallel_chunks(cloud.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kLooked);
+  std::vector<float> sigma((cloud.size() + step - 1) / step);
+  parallel_chunks(sigma.size(), context.threads, [&](std::size_t begin, std::size_t end) {
     std::vector<CellGrid::Found> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      if ((i - begin) % kBlock == 0) context.check("preprocess");
-      const float radius = noise_radius_m(radius_m, range_of(cloud, i));
-      sigma[i] = fit_plane(grid, cloud.points[i], radius, found).sigma_m;
+    for (std::size_t k = begin; k < end; ++k) {
+      if ((k - begin) % kBlock == 0) context.check("preprocess");
+      const float radius = noise_radius_m(radius_m, range_of(cloud, k * step));
+      sigma[k] = fit_plane(grid, cloud.points[k * step], radius, found).sigma_m;
     }
   });
   std::vector<std::vector<float>> bins;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!std::isfinite(sigma[i])) continue;
-    const std::size_t bin = bin_of(noise.first_range_m, range_of(cloud, i));
+  for (std::size_t k = 0; k < sigma.size(); ++k) {
+    if (!std::isfinite(sigma[k])) continue;
+    const std::size_t bin = bin_of(noise.first_range_m, range_of(cloud, k * step));
     if (bin >= bins.size()) bins.resize(bin + 1);
-    bins[bin].push_back(sigma[i]);
+    bins[bin].push_back(sigma[k]);
   }
   std::vector<Bin> measured;
   for (std::vector<float>& bin : bins) {

@@ -108,8 +108,8 @@ Assessed assess_coarse(const Meeting& meeting,
                 entry.wide.cell_m(),
                 verify,
                 evidence);
-  assessed.score = quality(
-      evidence, possible_in_place(evidence), static_cast<double>(meeting.source.size()));
+  assessed.score =
+      quality(evidence, possible_in_place(evidence), static_cast<double>(meeting.source.size()));
   return assessed;
 }
 
@@ -147,8 +147,8 @@ void assess_fine(const Meeting& meeting,
                 entry.record().prepared.resolution_m,
                 verify,
                 evidence);
-  assessed.score = quality(
-      evidence, possible_in_place(evidence), static_cast<double>(meeting.source.size()));
+  assessed.score =
+      quality(evidence, possible_in_place(evidence), static_cast<double>(meeting.source.size()));
 }
 
 }  // namespace landmarkdb

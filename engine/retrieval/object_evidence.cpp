@@ -35,10 +35,9 @@ Patch expected(const Meeting& object,
         });
     if (!faces) continue;
     const Eigen::Vector3f there = T_sensor_object * object.source[i];
-    const bool hidden =
-        std::all_of(ranges.begin(), ranges.end(), [&](const RangeImage& image) {
-          return image.hides(there, slack_m + static_cast<float>(kSightToleranceRange) * there.norm());
-        });
+    const bool hidden = std::all_of(ranges.begin(), ranges.end(), [&](const RangeImage& image) {
+      return image.hides(there, slack_m + static_cast<float>(kSightToleranceRange) * there.norm());
+    });
     if (hidden) continue;
     patch.points.push_back(object.source[i]);
     patch.normals.push_back(object.source_normals[i]);
@@ -72,18 +71,13 @@ void look_at_object(const Meeting& meeting,
                     const CleanQuery& query,
                     Assessed& assessed) {
   const std::span<const RangeImage> ranges = meeting.ranges.empty() ? query.ranges : meeting.ranges;
-  const Patch seen =
-      expected(meeting, ranges, query.cloud.viewpoints, assessed.T_entry_sensor);
+  const Patch seen = expected(meeting, ranges, query.cloud.viewpoints, assessed.T_entry_sensor);
   Evidence& evidence = assessed.evidence;
   VerifyOptions verify;
   verify.sight_tolerance_range = kSightToleranceRange;
   verify.sight_tolerance_cells = kSightToleranceCells;
-  measure_overlap(meeting.target,
-                  seen.points,
-                  seen.normals,
-                  assessed.icp.T_target_source,
-                  verify,
-                  evidence);
+  measure_overlap(
+      meeting.target, seen.points, seen.normals, assessed.icp.T_target_source, verify, evidence);
   measure_sight(ranges,
                 {entry.sight_points, entry.sight_normals},
                 assessed.T_entry_sensor.inverse(),
@@ -98,16 +92,21 @@ void look_at_object(const Meeting& meeting,
   // How much of the surface there is to be seen.
   evidence.coverage = static_cast<double>(seen.points.size()) /
                       static_cast<double>(std::max<std::size_t>(meeting.source.size(), 1));
+  // Only what can be seen can fix the pose: of that part's pairs, not of all.
+  if (evidence.coverage > 0.0) {
+    evidence.observability = std::min(1.0, evidence.observability / evidence.coverage);
+  }
   assessed.score = object_quality(evidence, static_cast<double>(seen.points.size()));
 }
 
 double outgrown_share(const Meeting& meeting,
                       const Entry& entry,
                       const Eigen::Isometry3d& T_entry_sensor) {
-  constexpr float kFlush = 0.5F;      // cells from the object's plane
-  constexpr float kBeyond = 1.25F;    // cells beside the nearest of its points
-  constexpr float kParallel = 0.9F;   // cosine
-  constexpr double kRim = 0.75 * 4.0; // cells between kBeyond and the grid's reach, sides of a square
+  constexpr float kFlush = 0.5F;     // cells from the object's plane
+  constexpr float kBeyond = 1.25F;   // cells beside the nearest of its points
+  constexpr float kParallel = 0.9F;  // cosine
+  constexpr double kRim =
+      0.75 * 4.0;  // cells between kBeyond and the grid's reach, sides of a square
   const float cell_m = entry.grid.cell_m();
   const Eigen::Isometry3f T = T_entry_sensor.cast<float>();
   const Eigen::Vector3f centre = T.inverse() * entry.centre.cast<float>();
@@ -127,8 +126,7 @@ double outgrown_share(const Meeting& meeting,
   }
   if (on == 0) return 0.0;
   const double rim = kRim * std::sqrt(static_cast<double>(on));
-  return closed_share(meeting.source_normals) *
-         std::min(1.0, static_cast<double>(beyond) / rim);
+  return closed_share(meeting.source_normals) * std::min(1.0, static_cast<double>(beyond) / rim);
 }
 
 }  // namespace landmarkdb

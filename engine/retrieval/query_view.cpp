@@ -105,8 +105,7 @@ CleanQuery dense_part(const CleanQuery& query, double spacing_m, const RunContex
   // cells beside such a one are kept whole, so that no edge is cut.
   constexpr double kCellSpacings = 3.2;
   constexpr std::uint32_t kFewest = 10;
-  const VoxelCells cells =
-      group_by_voxel(query.cloud.points, kCellSpacings * spacing_m, context);
+  const VoxelCells cells = group_by_voxel(query.cloud.points, kCellSpacings * spacing_m, context);
   std::vector<char> keep(query.cloud.size(), 0);
   const auto mark = [&](const VoxelCell& cell) {
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) keep[cells.order[i]] = 1;

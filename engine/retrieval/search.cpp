@@ -94,9 +94,8 @@ std::vector<Assessed> best_distinct(const std::vector<Assessed>& assessed,
     distinct.push_back(candidate);
   }
   const bool objects = !distinct.empty() && entries[distinct.front().entry].is_object();
-  return within_quota(distinct, objects ? kFineObjects : kFine, [](const Assessed& pose) {
-    return pose.entry;
-  });
+  return within_quota(
+      distinct, objects ? kFineObjects : kFine, [](const Assessed& pose) { return pose.entry; });
 }
 
 }  // namespace

@@ -18,9 +18,9 @@ constexpr std::size_t kNeighbours = 30;
 constexpr float kHopeless = 0.08F;
 // Distinct poses of an object that go on to refinement, where only what must be seen counts.
 constexpr std::size_t kKept = 60;
-// An object is seen over some degrees only, and its outline is what tells it: a fifth of a degree,
-// two pixels of a depth camera, 4 mm at a metre.
-constexpr double kSightStepRad = 0.2 * std::numbers::pi / 180.0;
+// An object is seen over some degrees only, and its outline is what tells it: a third of a
+// degree, three pixels of a depth camera, 5 mm at a metre.
+constexpr double kSightStepRad = 0.3 * std::numbers::pi / 180.0;
 
 // The query's surface at one resolution.
 struct QuerySurface {
@@ -94,19 +94,18 @@ void search_objects(const SearchInput& input, SearchResult& result) {
     RankOptions rank;
     rank.hopeless = kHopeless;
     rank.kept_last = kKept;
-    for (const RankedPose& ranked : rank_poses(
-             surface->fine,
-             entry.test,
-             settle_best(surface->wide,
-                         surface->fine,
-                         entry.test,
-                         proposals,
-                         centre,
-                         settle,
-                         input.context),
-             centre,
-             rank,
-             input.context)) {
+    for (const RankedPose& ranked : rank_poses(surface->fine,
+                                               entry.test,
+                                               settle_best(surface->wide,
+                                                           surface->fine,
+                                                           entry.test,
+                                                           proposals,
+                                                           centre,
+                                                           settle,
+                                                           input.context),
+                                               centre,
+                                               rank,
+                                               input.context)) {
       ++counts.survivors;
       candidates.push_back({result.matches.size() - 1,
                             ranked.T_target_source.inverse(),
