@@ -1,15 +1,12 @@
 #include "engine/features/narf_keypoints.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/error.hpp"
-#include "engine/cloud/spatial_index.hpp"
 #include "engine/features/cell_grid.hpp"
 #include "engine/features/pcl_narf.hpp"
 
@@ -38,28 +35,6 @@ double median_range_m(const std::vector<Eigen::Vector3f>& points) {
   const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
   std::nth_element(ranges.begin(), middle, ranges.end());
   return static_cast<double>(*middle);
-}
-
-// How far apart neighbouring view directions are: the edge of the square that each takes,
-// typically.
-double angular_spacing_rad(const std::vector<Eigen::Vector3f>& points, const RunContext& context) {
-  constexpr std::size_t kNeighbour =
-      8;  // not the first: a laser's rings lie close along and far across
-  constexpr std::size_t kLooked = 2000;
-  if (points.size() <= kNeighbour) return 0.0;
-  std::vector<Eigen::Vector3f> directions;
-  directions.reserve(points.size());
-  for (const Eigen::Vector3f& p : points) directions.push_back(p.stableNormalized());
-  const SpatialIndex index(directions, context);
-  std::vector<float> distances;
-  std::vector<Neighbour> neighbours;
-  for (std::size_t i = 0; i < directions.size(); i += directions.size() / kLooked + 1) {
-    index.nearest(directions[i], kNeighbour + 1, neighbours);
-    distances.push_back(std::sqrt(neighbours.back().squared_distance_m2));
-  }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return static_cast<double>(*middle) * std::sqrt(std::numbers::pi / kNeighbour);
 }
 
 // The place of the point nearest to `p` within `radius_m`.
@@ -96,13 +71,9 @@ Keypoints narf_keypoints(const PreparedCloud& cloud, double support_m, const Run
     std::vector<Eigen::Vector3f> points;
     for (const std::uint32_t index : group) points.push_back(cloud.points[index] - origin);
 
-    // One pixel a voxel at the usual range, or as wide as the view directions lie apart, where a
-    // frame was thinned: finer, and the image is more holes than surface.
-    constexpr double kPixelSpacings = 1.2;
+    // One pixel a voxel at the usual range: finer, and the image is more holes than surface.
     const double range_m = std::max(median_range_m(points), cloud.resolution_m);
-    const double pixel_rad = std::max(cloud.resolution_m / range_m,
-                                      kPixelSpacings * angular_spacing_rad(points, context));
-    context.check("keypoints");
+    const double pixel_rad = cloud.resolution_m / range_m;
     const CellGrid grid(points, 2.0 * cloud.resolution_m);
     std::vector<CellGrid::Found> found;
     for (const Eigen::Vector3f& p : narf_interest_points(points, pixel_rad, support_m)) {

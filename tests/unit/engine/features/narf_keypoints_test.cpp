@@ -66,22 +66,6 @@ TEST(NarfKeypoints, FindsTheBallAndTheBoxRatherThanTheOpenWalls) {
   EXPECT_EQ(found.index, narf_keypoints(cloud, kSupport, {}).index);
 }
 
-TEST(NarfKeypoints, WidensItsPixelsToWhatAThinnedFrameHolds) {
-  // At the pixel of one voxel a thinned frame was more holes than surface, and nothing was found.
-  const PreparedCloud whole = corner_room(1);
-  for (const std::size_t every : {2, 4, 6}) {
-    PreparedCloud thinned = whole;
-    thinned.points.clear();
-    thinned.normals.clear();
-    for (std::size_t i = 0; i < whole.size(); i += every) {
-      thinned.points.push_back(whole.points[i]);
-      thinned.normals.push_back(whole.normals[i]);
-    }
-    EXPECT_GT(narf_keypoints(thinned, kSupport, {}).size(), 3U)
-        << every << " of " << narf_keypoints(whole, kSupport, {}).size();
-  }
-}
-
 TEST(NarfKeypoints, SurvivesPlanesSeenExactlyEdgeOn) {
   // A shelf in the sensor's own plane and another that ends in it, above a floor.
   for (const double height : {0.0, 1e-7, -0.2}) {
