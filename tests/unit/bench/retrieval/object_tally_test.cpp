@@ -5,7 +5,8 @@
 namespace landmarkdb::bench {
 namespace {
 
-// A carton at the scene's origin, seen by a camera there, and an answer that names `T_scene_object`.
+// A carton at the scene's origin, seen by a camera there, and an answer that names
+// `T_scene_object`.
 struct OneCarton {
   datasets::ObjectModel carton =
       datasets::make_object({.kind = datasets::ObjectKind::kCarton, .seed = 1});
