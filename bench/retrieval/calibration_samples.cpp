@@ -43,6 +43,7 @@ const Feature kFeatures[] = {
     {"log_agreeing", "agreeing", "log(1 + agreeing)", log_count, kOnRequest},
     {"quality", "quality", "quality", as_it_is, kOnRequest},
     {"coverage", "coverage", "coverage", as_it_is, kOnRequest},
+    {"outgrown", "outgrown", "outgrown", as_it_is, kOnRequest},
 };
 
 std::string known_names() {

@@ -48,7 +48,7 @@ PointCloud join_clouds(std::vector<QueryCloud> clouds,
     cleaned.push_back(clean(std::move(one.cloud), counts, context));
     poses.push_back(one.T_query_cloud);
   }
-  PointCloud joined = merge_clouds(cleaned, poses);
+  PointCloud joined = merge_clouds(cleaned, poses, context);
   context.check("preprocess");
   // Clouds that overlap to the bit are one surface, not two votes for it.
   const CloudCounts again = sanitise(joined, context);

@@ -11,6 +11,7 @@
 namespace landmarkdb {
 namespace {
 
+constexpr std::size_t kBetweenChecks = std::size_t{1} << 16U;
 constexpr std::size_t kMostViewpoints = std::numeric_limits<std::uint16_t>::max();
 
 struct Kept {
@@ -49,7 +50,8 @@ Eigen::Vector3d choose_origin(std::span<const PointCloud> clouds,
 }  // namespace
 
 PointCloud merge_clouds(std::span<const PointCloud> clouds,
-                        std::span<const Eigen::Isometry3d> T_scene_cloud) {
+                        std::span<const Eigen::Isometry3d> T_scene_cloud,
+                        const RunContext& context) {
   if (clouds.size() != T_scene_cloud.size()) {
     throw Error(ErrorCode::kInvalidArgument,
                 std::to_string(clouds.size()) + " clouds come with " +
@@ -74,6 +76,7 @@ PointCloud merge_clouds(std::span<const PointCloud> clouds,
     };
     const std::size_t first_viewpoint = merged.viewpoints.size();
     for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (i % kBetweenChecks == 0) context.check("preprocess");
       merged.points.push_back(carry(cloud.points[i]));
       if (kept.normals) {
         merged.normals.push_back((R * cloud.normals[i].cast<double>()).cast<float>());

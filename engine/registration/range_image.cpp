@@ -221,6 +221,14 @@ std::size_t RangeImage::solid(const std::vector<signed char>& says) const {
   return count;
 }
 
+bool RangeImage::hides(const Eigen::Vector3f& p, float slack_m) const {
+  const Eigen::Vector3f ray = p - viewpoint_;
+  const float range = ray.norm();
+  if (!(range > 0.0F) || cone_axis_.dot(ray) < cone_cosine_ * range) return false;
+  const Cell& wide = widened_[index_of(place_of(ray))];
+  return wide.furthest > 0.0F && range > wide.furthest + slack_m;
+}
+
 SightCounts RangeImage::compare(const SightSurface& surface,
                                 const Eigen::Isometry3d& T_here_surface,
                                 float patch_m,

@@ -57,6 +57,10 @@ class RangeImage {
                       float patch_m,
                       const SightTolerance& tolerance) const;
 
+  // True when the sensor measured something nearer than `p` (its own frame) in that direction and
+  // all around it, by more than `slack_m`: the point cannot have been seen.
+  bool hides(const Eigen::Vector3f& p, float slack_m) const;
+
   float max_range_m() const { return max_range_m_; }
   double step_rad() const { return step_rad_; }
 

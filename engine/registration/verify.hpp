@@ -26,6 +26,9 @@ struct Evidence {
   double agreeing = 0.0;  // the query's keypoints of which a descriptor pair agrees
   double contrast =
       1.0;  // -1..1: of what tells the pose from its nearest rival, for it less against
+  // Of an object: the share of its outline at which the query's surface goes on flush beyond it, as
+  // a larger thing's does.
+  double outgrown = 0.0;
   bool of_object = false;  // measured on an object in the query, not on the query in a place
   Eigen::Vector3d strength =
       Eigen::Vector3d::Zero();  // share of the normals' scatter along x, y, z, target frame

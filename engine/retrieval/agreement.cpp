@@ -36,7 +36,6 @@ void count_agreeing(const SearchInput& input, SearchResult& result) {
           input.context.check("verify");
           Assessed& pose = result.poses[i];
           const Entry& entry = input.entries[pose.entry];
-          if (entry.is_object()) continue;
           pose.evidence.agreeing = agreeing_keypoints(result.matches[pose.matches], entry, pose);
         }
       });

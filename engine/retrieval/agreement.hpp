@@ -8,7 +8,7 @@ namespace landmarkdb {
 // three voxels.
 inline constexpr double kInlierCells = 3.0;
 
-// Counts for each pose of a place the query's keypoints of which a descriptor pair agrees with it:
+// Counts for each pose the query's keypoints of which a descriptor pair agrees with it:
 // what the descriptors say, beside what the surface does. Fills `evidence.agreeing`.
 void count_agreeing(const SearchInput& input, SearchResult& result);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/retrieval/object_evidence.hpp"
 #include "engine/retrieval/rank_poses.hpp"
 
 namespace landmarkdb {
@@ -49,47 +50,12 @@ double possible_in_place(const Evidence& evidence) {
   return std::max(evidence.coverage, kLeast);
 }
 
-// An object fills little of the view, and clutter may stand before it.
-void expect_object(Evidence& evidence) {
-  evidence.of_object = true;
-  const double judged = evidence.explained + evidence.crossed;
-  evidence.explained = judged > 0.0 ? evidence.explained / judged : 0.0;
-  evidence.crossed = judged > 0.0 ? evidence.crossed / judged : 0.0;
-  evidence.coverage = 1.0;
-}
-
 VerifyOptions verify_options(const Meeting& meeting) {
   VerifyOptions options;
   if (meeting.tolerance_m > 0.0) {
     options.surface_tolerance_cells = meeting.tolerance_m / meeting.target.cell_m();
   }
   return options;
-}
-
-struct Patch {
-  std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;
-};
-
-// The part of an object's surface that faces the sensor, from one viewpoint or another: all of it
-// that can be seen.
-Patch facing(const Meeting& object,
-             std::span<const Eigen::Vector3f> viewpoints,
-             const Eigen::Isometry3d& T_object_sensor) {
-  constexpr float kGrazing = 0.2F;  // cosine: flatter surface is rarely measured
-  const Eigen::Isometry3f T = T_object_sensor.cast<float>();
-  Patch patch;
-  for (std::size_t i = 0; i < object.source.size(); ++i) {
-    const bool seen =
-        std::any_of(viewpoints.begin(), viewpoints.end(), [&](const Eigen::Vector3f& viewpoint) {
-          const Eigen::Vector3f ray = T * viewpoint - object.source[i];
-          return object.source_normals[i].dot(ray) >= kGrazing * ray.norm();
-        });
-    if (!seen) continue;
-    patch.points.push_back(object.source[i]);
-    patch.normals.push_back(object.source_normals[i]);
-  }
-  return patch;
 }
 
 }  // namespace
@@ -129,22 +95,21 @@ Assessed assess_coarse(const Meeting& meeting,
   assessed.icp = refine_icp(
       meeting.target, points, normals, turned(T_entry_sensor, meeting.entry_is_source), options);
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
+  if (meeting.entry_is_source) {
+    look_at_object(meeting, entry, query, assessed);
+    return assessed;
+  }
   Evidence& evidence = assessed.evidence;
   const VerifyOptions verify = verify_options(meeting);
   measure_overlap(meeting.target, points, normals, assessed.icp.T_target_source, verify, evidence);
-  if (meeting.entry_is_source) {
-    evidence.explained = evidence.coverage = 1.0;
-  } else {
-    measure_sight(query.ranges,
-                  entry.wide_sight,
-                  assessed.T_entry_sensor.inverse(),
-                  entry.wide.cell_m(),
-                  verify,
-                  evidence);
-  }
-  assessed.score = quality(evidence,
-                           meeting.entry_is_source ? 1.0 : possible_in_place(evidence),
-                           static_cast<double>(meeting.source.size()));
+  measure_sight(query.ranges,
+                entry.wide_sight,
+                assessed.T_entry_sensor.inverse(),
+                entry.wide.cell_m(),
+                verify,
+                evidence);
+  assessed.score =
+      quality(evidence, possible_in_place(evidence), static_cast<double>(meeting.source.size()));
   return assessed;
 }
 
@@ -162,26 +127,28 @@ void assess_fine(const Meeting& meeting,
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
   Evidence& evidence = assessed.evidence;
   evidence = {};
+  evidence.observability =
+      observability(assessed.icp, extent_of(meeting.source), meeting.source.size());
   const VerifyOptions verify = verify_options(meeting);
-  const Patch seen = meeting.entry_is_source
-                         ? facing(meeting, query.cloud.viewpoints, assessed.T_entry_sensor)
-                         : Patch{};
-  using Vectors = std::span<const Eigen::Vector3f>;
-  const Vectors points = meeting.entry_is_source ? Vectors(seen.points) : meeting.source;
-  const Vectors normals = meeting.entry_is_source ? Vectors(seen.normals) : meeting.source_normals;
-  measure_overlap(meeting.target, points, normals, assessed.icp.T_target_source, verify, evidence);
+  if (meeting.entry_is_source) {
+    look_at_object(meeting, entry, query, assessed);
+    evidence.outgrown = outgrown_share(meeting, entry, assessed.T_entry_sensor);
+    return;
+  }
+  measure_overlap(meeting.target,
+                  meeting.source,
+                  meeting.source_normals,
+                  assessed.icp.T_target_source,
+                  verify,
+                  evidence);
   measure_sight(query.ranges,
                 entry.sight,
                 assessed.T_entry_sensor.inverse(),
                 entry.record().prepared.resolution_m,
                 verify,
                 evidence);
-  evidence.observability =
-      observability(assessed.icp, extent_of(meeting.source), meeting.source.size());
-  if (meeting.entry_is_source) expect_object(evidence);
-  assessed.score = quality(evidence,
-                           meeting.entry_is_source ? 1.0 : possible_in_place(evidence),
-                           static_cast<double>(points.size()));
+  assessed.score =
+      quality(evidence, possible_in_place(evidence), static_cast<double>(meeting.source.size()));
 }
 
 }  // namespace landmarkdb

@@ -52,10 +52,12 @@ struct Meeting {
   // Plane distance at which a point still lies on the surface. Entries described at different
   // resolutions compete, so the finest sets it for all.
   double tolerance_m = 0.0;
+  // What the sensor saw, finer than the query's own where objects are asked for; empty: those.
+  std::span<const RangeImage> ranges{};
 };
 
-// A quick refinement with few points, and the sight of the entry's wide grid: enough to rank
-// candidates.
+// A quick refinement with few points, and the sight of the entry's wide grid (of an object's whole
+// surface): enough to rank candidates.
 Assessed assess_coarse(const Meeting& meeting,
                        const Entry& entry,
                        const CleanQuery& query,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/retrieval/object_confidence.hpp"
+
 namespace landmarkdb {
 
 namespace {
@@ -20,8 +22,7 @@ double place_log_odds(const Evidence& evidence, double lead, double observed) {
          3.04 * evidence.crossed - 8.94 * std::sqrt(evidence.contradicted);
 }
 
-// Set by hand, on the safe side: for objects, of which none are generated yet to fit it on, and for
-// a pose taken by itself.
+// Set by hand, on the safe side: of a place's pose taken by itself.
 double cautious_log_odds(const Evidence& evidence, double quality, double lead, double observed) {
   return -28.2 + 1.3 * quality + 20.0 * lead - 2.0 * evidence.crossed + 5.0 * observed +
          4.6 * evidence.coverage + 13.3 * evidence.explained;
@@ -32,14 +33,16 @@ double cautious_log_odds(const Evidence& evidence, double quality, double lead, 
 double confidence_of(const Evidence& evidence, double quality, double margin) {
   const double lead = std::min(margin, kFullMargin);
   const double observed = std::min(1.0, evidence.observability / kFullObservability);
-  const double z = evidence.of_object ? cautious_log_odds(evidence, quality, lead, observed)
+  const double z = evidence.of_object ? object_log_odds(evidence, quality, margin)
                                       : place_log_odds(evidence, lead, observed);
   return 1.0 / (1.0 + std::exp(-z));
 }
 
 double confidence_alone(const Evidence& evidence, double quality) {
   const double observed = std::min(1.0, evidence.observability / kFullObservability);
-  return 1.0 / (1.0 + std::exp(-cautious_log_odds(evidence, quality, kFullMargin, observed)));
+  const double z = evidence.of_object ? object_log_odds_alone(evidence, quality)
+                                      : cautious_log_odds(evidence, quality, kFullMargin, observed);
+  return 1.0 / (1.0 + std::exp(-z));
 }
 
 }  // namespace landmarkdb

@@ -60,7 +60,7 @@ MergedScans merge_scans(std::vector<Scan> scans, const RunContext& context) {
   }
   const bool as_it_is =
       clouds.size() == 1 && T_scene_cloud[0].isApprox(Eigen::Isometry3d::Identity());
-  merged.cloud = as_it_is ? std::move(clouds[0]) : merge_clouds(clouds, T_scene_cloud);
+  merged.cloud = as_it_is ? std::move(clouds[0]) : merge_clouds(clouds, T_scene_cloud, context);
   return merged;
 }
 

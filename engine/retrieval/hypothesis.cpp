@@ -143,7 +143,8 @@ Hypothesis make_hypothesis(const Judged& judged,
                     .agreeing = pose.evidence.agreeing,
                     .contrast = pose.evidence.contrast,
                     .contradicted = pose.evidence.contradicted,
-                    .observability = pose.evidence.observability};
+                    .observability = pose.evidence.observability,
+                    .outgrown = pose.evidence.outgrown};
   hypothesis.covariance = covariance_of(pose, entry, -input.query.cloud.origin);
   return hypothesis;
 }

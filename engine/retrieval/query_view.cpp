@@ -8,6 +8,7 @@
 #include "engine/cloud/join_clouds.hpp"
 #include "engine/cloud/prepare_cloud.hpp"
 #include "engine/cloud/resolution.hpp"
+#include "engine/cloud/voxel_cells.hpp"
 #include "engine/features/describe_shot.hpp"
 #include "engine/features/detect_keypoints.hpp"
 #include "engine/features/range_noise.hpp"
@@ -67,10 +68,11 @@ Keypoints detect_enough(const PreparedCloud& cloud,
   return detect_keypoints(cloud, options, context);
 }
 
-// What was seen from each viewpoint; those nothing was seen from are left out.
-std::vector<RangeImage> range_images(const PointCloud& cloud) {
+}  // namespace
+
+std::vector<RangeImage> range_images(const PointCloud& cloud, double finest_step_rad) {
   if (cloud.viewpoint_index.empty()) {
-    return {RangeImage(cloud.points, cloud.viewpoints[0], kSightStepRad)};
+    return {RangeImage(cloud.points, cloud.viewpoints[0], finest_step_rad)};
   }
   std::vector<std::vector<Eigen::Vector3f>> seen(cloud.viewpoints.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -78,12 +80,10 @@ std::vector<RangeImage> range_images(const PointCloud& cloud) {
   }
   std::vector<RangeImage> images;
   for (std::size_t k = 0; k < seen.size(); ++k) {
-    if (!seen[k].empty()) images.emplace_back(seen[k], cloud.viewpoints[k], kSightStepRad);
+    if (!seen[k].empty()) images.emplace_back(seen[k], cloud.viewpoints[k], finest_step_rad);
   }
   return images;
 }
-
-}  // namespace
 
 CleanQuery clean_query(std::vector<QueryCloud> clouds, const RunContext& context) {
   CloudCounts counts;
@@ -93,12 +93,48 @@ CleanQuery clean_query(std::vector<QueryCloud> clouds, const RunContext& context
   for (const Eigen::Vector3f& point : cloud.points) centre += point.cast<double>();
   if (!cloud.empty()) centre /= static_cast<double>(cloud.size());
   context.check("preprocess");
-  std::vector<RangeImage> ranges = range_images(cloud);
+  std::vector<RangeImage> ranges = range_images(cloud, kSightStepRad);
   return {std::move(cloud), counts, spacing_m, centre, std::move(ranges)};
 }
 
 CleanQuery clean_query(const PointCloud& cloud, const RunContext& context) {
   return clean_query(std::vector<QueryCloud>{{cloud}}, context);
+}
+
+CleanQuery dense_part(const CleanQuery& query, double spacing_m, const RunContext& context) {
+  // A surface through a cell this wide has at least kFewest points where they are dense enough;
+  // cells beside such a one are kept whole, so that no edge is cut.
+  constexpr double kCellSpacings = 3.2;
+  constexpr std::uint32_t kFewest = 10;
+  const VoxelCells cells = group_by_voxel(query.cloud.points, kCellSpacings * spacing_m, context);
+  std::vector<char> keep(query.cloud.size(), 0);
+  const auto mark = [&](const VoxelCell& cell) {
+    for (std::uint32_t i = cell.begin; i < cell.end; ++i) keep[cells.order[i]] = 1;
+  };
+  for (const VoxelCell& cell : cells.cells) {
+    if (cell.end - cell.begin < kFewest) continue;
+    for (int k = 0; k < 27; ++k) {
+      const VoxelCell* beside =
+          find_cell(cells, cell.x + k % 3 - 1, cell.y + k / 3 % 3 - 1, cell.z + k / 9 - 1);
+      if (beside != nullptr) mark(*beside);
+    }
+  }
+  CleanQuery dense;
+  const PointCloud& whole = query.cloud;
+  dense.cloud.origin = whole.origin;
+  dense.cloud.viewpoints = whole.viewpoints;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (keep[i] == 0) continue;
+    dense.cloud.points.push_back(whole.points[i]);
+    if (!whole.normals.empty()) dense.cloud.normals.push_back(whole.normals[i]);
+    if (!whole.viewpoint_index.empty()) {
+      dense.cloud.viewpoint_index.push_back(whole.viewpoint_index[i]);
+    }
+  }
+  dense.counts = query.counts;
+  dense.spacing_m = query.spacing_m;
+  dense.centre = query.centre;
+  return dense;
 }
 
 QueryView view_query(const CleanQuery& query,

@@ -25,9 +25,17 @@ struct CleanQuery {
   std::vector<RangeImage> ranges;  // free space as the sensor saw it, one for each viewpoint
 };
 
+// What was seen from each viewpoint, in cells of this width at the least; viewpoints that nothing
+// was seen from are left out.
+std::vector<RangeImage> range_images(const PointCloud& cloud, double finest_step_rad);
+
 // Cleans a query and lays its clouds together (join_clouds, which says what is thrown).
 CleanQuery clean_query(std::vector<QueryCloud> clouds, const RunContext& context = {});
 CleanQuery clean_query(const PointCloud& cloud, const RunContext& context = {});  // one alone
+
+// The part of the query whose points are no further apart than `spacing_m`, without range images;
+// empty where there is none.
+CleanQuery dense_part(const CleanQuery& query, double spacing_m, const RunContext& context);
 
 // The query as an entry of one resolution sees it.
 struct QueryView {

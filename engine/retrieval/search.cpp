@@ -22,6 +22,9 @@ struct Quota {
 };
 constexpr Quota kCoarse{.best = 80, .entries = 10, .each = 10};
 constexpr Quota kFine{.best = 20, .entries = 6, .each = 6};
+// Objects do not compete but where they stand: each has its own.
+constexpr Quota kCoarseObjects{.best = 80, .entries = 60, .each = 40};
+constexpr Quota kFineObjects{.best = 20, .entries = 20, .each = 6};
 
 // Those of `sorted` (best first) that the quota lets through, in their order.
 template <typename Item, typename EntryOf>
@@ -90,28 +93,49 @@ std::vector<Assessed> best_distinct(const std::vector<Assessed>& assessed,
       continue;
     distinct.push_back(candidate);
   }
-  return within_quota(distinct, kFine, [](const Assessed& pose) { return pose.entry; });
+  const bool objects = !distinct.empty() && entries[distinct.front().entry].is_object();
+  return within_quota(
+      distinct, objects ? kFineObjects : kFine, [](const Assessed& pose) { return pose.entry; });
 }
 
 }  // namespace
+
+const QueryView& ViewCache::view_of(const CleanQuery& query,
+                                    const FeatureOptions& options,
+                                    std::list<Made>& made) {
+  made.push_back({options, {}});
+  try {
+    made.back().view = view_query(query, options, seed_, context_, timings_);
+  } catch (const Error& error) {
+    // Too small, too flat or too wide a cloud at this resolution; another entry's may suit it.
+    if (error.code() != ErrorCode::kInvalidArgument) throw;
+  }
+  return made.back().view;
+}
 
 const QueryView& ViewCache::at(const FeatureOptions& options) {
   for (const Made& made : made_) {
     if (made.options == options) return made.view;
   }
-  made_.push_back({options, {}});
-  try {
-    made_.back().view = view_query(query_, options, seed_, context_, timings_);
-  } catch (const Error& error) {
-    // Too small, too flat or too wide a cloud at this resolution; another entry's may suit it.
-    if (error.code() != ErrorCode::kInvalidArgument) throw;
+  return view_of(query_, options, made_);
+}
+
+const QueryView& ViewCache::dense_at(const FeatureOptions& options) {
+  for (const Made& made : dense_) {
+    if (made.options == options) return made.view;
   }
-  return made_.back().view;
+  const CleanQuery dense = [&] {
+    const StageTimer timer(timings_.preprocess);
+    return dense_part(query_, kMostSpacingVoxels * options.voxel_m, context_);
+  }();
+  return view_of(dense, options, dense_);
 }
 
 std::size_t ViewCache::keypoints() const {
   std::size_t most = 0;
-  for (const Made& made : made_) most = std::max(most, made.view.descriptors.size());
+  for (const auto* list : {&made_, &dense_}) {
+    for (const Made& made : *list) most = std::max(most, made.view.descriptors.size());
+  }
   return most;
 }
 
@@ -160,9 +184,12 @@ void assess_candidates(const SearchInput& input,
   std::stable_sort(candidates.begin(),
                    candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-  candidates = within_quota(candidates, kCoarse, [&](const Candidate& candidate) {
+  const auto entry_of = [&](const Candidate& candidate) {
     return result.matches[candidate.matches].entry;
-  });
+  };
+  const bool objects =
+      !candidates.empty() && input.entries[entry_of(candidates.front())].is_object();
+  candidates = within_quota(candidates, objects ? kCoarseObjects : kCoarse, entry_of);
   for (const Candidate& candidate : candidates) ++result.matches[candidate.matches].poses.refined;
   std::vector<Assessed> assessed;
   {

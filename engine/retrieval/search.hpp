@@ -30,6 +30,9 @@ class ViewCache {
       : query_(query), seed_(seed), context_(context), timings_(timings) {}
 
   const QueryView& at(const FeatureOptions& options);
+  // The same of the part of the query that is dense enough for that resolution: an object stands
+  // somewhere in it, and the walls behind need not be seen as closely.
+  const QueryView& dense_at(const FeatureOptions& options);
   std::size_t keypoints() const;  // of the finest view made
 
  private:
@@ -41,7 +44,11 @@ class ViewCache {
   std::uint64_t seed_;
   const RunContext& context_;
   StageTimings& timings_;
+  const QueryView& view_of(const CleanQuery& query,
+                           const FeatureOptions& options,
+                           std::list<Made>& made);
   std::list<Made> made_;  // a list: references stay valid
+  std::list<Made> dense_;
 };
 
 // A query thinner than this has too few points in a descriptor's support to look like the entry's

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <numbers>
 #include <unordered_map>
 #include <utility>
 
@@ -12,9 +13,20 @@ namespace landmarkdb {
 
 namespace {
 
-constexpr std::size_t kNeighbours = 10;
+constexpr std::size_t kNeighbours = 30;
 // Half of an object faces away and clutter hides more: a third of its points found is a good start.
 constexpr float kHopeless = 0.08F;
+// Distinct poses of an object that go on to refinement, where only what must be seen counts.
+constexpr std::size_t kKept = 60;
+// An object is seen over some degrees only, and its outline is what tells it: a third of a
+// degree, three pixels of a depth camera, 5 mm at a metre.
+constexpr double kSightStepRad = 0.3 * std::numbers::pi / 180.0;
+
+// The query's surface at one resolution.
+struct QuerySurface {
+  SurfaceGrid fine;
+  SurfaceGrid wide;
+};
 
 // Looks each of the object's descriptors up among the query's: the object is whole, the query is
 // clutter.
@@ -53,31 +65,45 @@ Eigen::Vector3d centre_of(const PreparedCloud& cloud) {
 
 void search_objects(const SearchInput& input, SearchResult& result) {
   std::vector<Candidate> candidates;
-  // The query as a surface, one grid a resolution.
-  std::unordered_map<const QueryView*, std::unique_ptr<SurfaceGrid>> grids;
+  std::unordered_map<const QueryView*, std::unique_ptr<QuerySurface>> surfaces;
   for (std::size_t e = 0; e < input.entries.size(); ++e) {
     const Entry& entry = input.entries[e];
     if (!entry.is_object() || !input.wanted[e]) continue;
-    if (input.query.spacing_m > kMostSpacingVoxels * entry.record().options.voxel_m) {
+    input.context.check("pose");
+    const QueryView& view = input.views.dense_at(entry.record().options);
+    if (view.prepared.size() == 0) {
       result.lost_at = "density";
       result.coarsest_voxel_m = std::max(result.coarsest_voxel_m, entry.record().options.voxel_m);
       continue;
     }
-    const QueryView& view = input.views.at(entry.record().options);
     if (view.descriptors.size() == 0) continue;
-    auto& grid = grids[&view];
-    if (!grid) grid = std::make_unique<SurfaceGrid>(make_grid(view.prepared));
+    auto& surface = surfaces[&view];
+    if (!surface) {
+      const StageTimer timer(input.timings.preprocess);
+      surface = std::make_unique<QuerySurface>(
+          QuerySurface{make_grid(view.prepared, input.context), make_wide_grid(view.prepared)});
+    }
     result.matches.push_back(match_object(input, e, view));
     const StageTimer timer(input.timings.pose);
-    RankOptions rank;
-    rank.hopeless = kHopeless;
+    const Eigen::Vector3d centre = centre_of(entry.record().prepared);
     const std::vector<Proposal> proposals = propose_object(result.matches.back(), entry);
     PoseCounts& counts = result.matches.back().poses;
     counts.proposals = proposals.size();
-    for (const RankedPose& ranked : rank_poses(*grid,
+    SettleBestOptions settle;
+    settle.hopeless = kHopeless;
+    RankOptions rank;
+    rank.hopeless = kHopeless;
+    rank.kept_last = kKept;
+    for (const RankedPose& ranked : rank_poses(surface->fine,
                                                entry.test,
-                                               proposals,
-                                               centre_of(entry.record().prepared),
+                                               settle_best(surface->wide,
+                                                           surface->fine,
+                                                           entry.test,
+                                                           proposals,
+                                                           centre,
+                                                           settle,
+                                                           input.context),
+                                               centre,
                                                rank,
                                                input.context)) {
       ++counts.survivors;
@@ -91,15 +117,17 @@ void search_objects(const SearchInput& input, SearchResult& result) {
     if (result.lost_at.empty()) result.lost_at = result.matches.empty() ? "keypoints" : "pose";
     return;
   }
+  const std::vector<RangeImage> ranges = range_images(input.query.cloud, kSightStepRad);
   assess_candidates(
       input,
       std::move(candidates),
       [&](const EntryMatches& matches) {
         const PreparedCloud& object = input.entries[matches.entry].record().prepared;
-        return Meeting{.target = *grids.at(matches.view),
+        return Meeting{.target = surfaces.at(matches.view)->fine,
                        .source = object.points,
                        .source_normals = object.normals,
-                       .entry_is_source = true};
+                       .entry_is_source = true,
+                       .ranges = ranges};
       },
       result);
 }

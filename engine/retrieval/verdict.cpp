@@ -113,10 +113,11 @@ bool is_sure(const Standing& best, const VerdictOptions& options) {
   return best.judged.confidence >= options.sure_confidence;
 }
 
-// The best pose cannot be told from another, or from itself slid along a wall.
+// The best pose cannot be told from another, or from itself slid along a wall, or, a bottle's,
+// turned about its axis.
 bool is_rivalled(const Standing& best, const VerdictOptions& options) {
   const Evidence& evidence = best.judged.pose.evidence;
-  if (!evidence.of_object && evidence.observability < options.least_observability) return true;
+  if (evidence.observability < options.least_observability) return true;
   const double share = best.rival_score / best.judged.pose.score;
   if (share >= options.rival_share) return true;
   const double least =
@@ -142,6 +143,21 @@ std::vector<Assessed> without_close(std::span<const Assessed> poses,
     if (!close) kept.push_back(poses[j]);
   }
   return kept;
+}
+
+// Objects that stand apart do not compete, and a wrong pose of one may score above a right one of
+// another: what one can be surest of comes first. Poses of places stay as they are.
+void put_surest_object_first(std::vector<Assessed>& poses, std::span<const Entry> entries) {
+  const auto of_object = [&](const Assessed& pose) { return entries[pose.entry].is_object(); };
+  if (!std::all_of(poses.begin(), poses.end(), of_object)) return;
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    order.emplace_back(-judge_among(i, poses, entries).judged.confidence, i);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<Assessed> sorted;
+  for (const auto& [confidence, i] : order) sorted.push_back(std::move(poses[i]));
+  poses = std::move(sorted);
 }
 
 std::string why_not(const Judged& best) {
@@ -172,11 +188,12 @@ Verdict judge(std::vector<Assessed> assessed,
               const Eigen::Vector3d& centre,
               const VerdictOptions& options) {
   Verdict verdict;
-  const std::vector<Assessed> poses = distinct(std::move(assessed), entries, centre, options);
+  std::vector<Assessed> poses = distinct(std::move(assessed), entries, centre, options);
   if (poses.empty() || !(poses[0].score > 0.0)) {
     verdict.reason = "pose: no proposal lies on the surface of any entry";
     return verdict;
   }
+  put_surest_object_first(poses, entries);
   const Standing best = judge_among(0, poses, entries);
   verdict.judged.push_back(best.judged);
   for (std::size_t i = 1; i < poses.size(); ++i) {

@@ -36,8 +36,8 @@ struct VerdictOptions {
   double least_contrast = 0.1;
   double reach_share = 0.65;
   double least_contrast_in_reach = 0.3;
-  // Below this a place's surface leaves a freedom open (a slide along a wall), and any pose along
-  // it is a rival.
+  // Below this the surface leaves a freedom open (a slide along a wall, a turn of a bottle), and
+  // any pose along it is a rival.
   double least_observability = 0.01;
   // A pose that is not this believable by its own evidence answers nothing, however far the others
   // are behind. The threshold of the log-odds -1: 1 / (1 + e).

@@ -82,6 +82,7 @@ struct Fit {
   double contrast = 0.0;      // -1..1: of the points that fit the pose and its nearest rival unlike
   double contradicted = 0.0;  // of the directions predicted: amid others that are contradicted too
   double observability = 0.0;  // 0..1: weakest of the six freedoms against the strongest
+  double outgrown = 0.0;       // of an object's outline: the surface seen goes on flush beyond it
 };
 
 // T_scene_sensor = T_icp * T_scene_landmark * T_landmark_sensor, exactly.

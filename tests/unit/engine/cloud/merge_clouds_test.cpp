@@ -74,6 +74,16 @@ TEST(MergeClouds, TakesOneCloudThrough) {
   EXPECT_TRUE(merged.viewpoint_index.empty());
 }
 
+TEST(MergeClouds, StopsWhenAskedTo) {
+  const std::array clouds{two_points()};
+  const std::array poses{Eigen::Isometry3d::Identity()};
+  std::stop_source source;
+  source.request_stop();
+  RunContext context;
+  context.stop = source.get_token();
+  EXPECT_THROW(merge_clouds(clouds, poses, context), Error);
+}
+
 TEST(MergeClouds, RefusesAWrongNumberOfPoses) {
   const std::array clouds{two_points()};
   EXPECT_THROW(merge_clouds(clouds, {}), Error);

@@ -39,16 +39,6 @@ TEST(ConfidenceOf, RisesWithWhatSpeaksForAPoseAndFallsWithWhatSpeaksAgainst) {
   EXPECT_LT(less(&Evidence::contradicted, 0.05), base);
 }
 
-TEST(ConfidenceOf, OfAnObjectAsksForQualityAndCoverageToo) {
-  Evidence evidence = convincing();
-  evidence.of_object = true;
-  const double base = confidence_of(evidence, 0.7, 0.3);
-  EXPECT_GT(confidence_of(evidence, 0.8, 0.3), base);
-  EXPECT_GT(confidence_of(evidence, 0.7, 0.4), base);
-  evidence.coverage = 0.5;
-  EXPECT_LT(confidence_of(evidence, 0.7, 0.3), base);
-}
-
 TEST(ConfidenceAlone, DoesNotLookAtRivals) {
   Evidence evidence = convincing();
   const double base = confidence_alone(evidence, 0.7);
