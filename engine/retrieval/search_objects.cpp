@@ -57,7 +57,7 @@ void search_objects(const SearchInput& input, SearchResult& result) {
   std::unordered_map<const QueryView*, std::unique_ptr<SurfaceGrid>> grids;
   for (std::size_t e = 0; e < input.entries.size(); ++e) {
     const Entry& entry = input.entries[e];
-    if (!entry.is_object() || !input.wanted[e]) continue;
+    if (!entry.is_object() || !input.wanted[e] || input.entries.is_damaged(e)) continue;
     if (input.query.spacing_m > kMostSpacingVoxels * entry.record().options.voxel_m) {
       result.lost_at = "density";
       result.coarsest_voxel_m = std::max(result.coarsest_voxel_m, entry.record().options.voxel_m);
