@@ -79,6 +79,7 @@ struct Stats {
   std::uint64_t tracks_open = 0, track_frames = 0, track_frames_seen = 0;
   double track_ms_mean = 0.0, track_ms_max = 0.0;
   std::uint64_t resident_bytes = 0, database_bytes = 0, reloads_total = 0;
+  std::uint64_t scenes_on_demand = 0, scene_memory_bytes = 0, scene_loads = 0;
 };
 
 struct Health {

@@ -222,7 +222,10 @@ Stats from_proto(const v1::StatsReply& stats) {
           .track_ms_max = stats.track_ms_max(),
           .resident_bytes = stats.resident_bytes(),
           .database_bytes = stats.database_bytes(),
-          .reloads_total = stats.reloads_total()};
+          .reloads_total = stats.reloads_total(),
+          .scenes_on_demand = stats.scenes_on_demand(),
+          .scene_memory_bytes = stats.scene_memory_bytes(),
+          .scene_loads = stats.scene_loads()};
 }
 
 Health from_proto(const v1::HealthReply& health) {

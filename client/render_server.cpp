@@ -56,7 +56,10 @@ Json stats_json(const Stats& s) {
           {"track_ms_max", s.track_ms_max},
           {"resident_bytes", s.resident_bytes},
           {"database_bytes", s.database_bytes},
-          {"reloads_total", s.reloads_total}};
+          {"reloads_total", s.reloads_total},
+          {"scenes_on_demand", s.scenes_on_demand},
+          {"scene_memory_bytes", s.scene_memory_bytes},
+          {"scene_loads", s.scene_loads}};
 }
 
 std::string stats_text(const Stats& s) {
@@ -93,6 +96,11 @@ std::string stats_text(const Stats& s) {
        cli::count_text(s.connections) + " open, " + cli::count_text(s.connections_total) +
            " in all");
   line("memory", cli::bytes_text(s.resident_bytes));
+  if (s.scenes_on_demand > 0) {
+    line("on demand",
+         cli::counted(s.scenes_on_demand, "scene") + ", " + cli::bytes_text(s.scene_memory_bytes) +
+             " of them in memory; read " + cli::count_text(s.scene_loads) + " times");
+  }
   line("database", cli::bytes_text(s.database_bytes));
   line("threads", cli::count_text(s.threads));
   return text;

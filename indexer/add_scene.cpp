@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/matching/code_bytes.hpp"
 #include "indexer/new_database.hpp"
 #include "store/names.hpp"
 #include "store/store.hpp"
@@ -65,8 +66,9 @@ AddResult add_scene(const AddRequest& request, const std::string& db, const RunC
   AddResult result;
   result.record =
       describe_scene(request.name, read_scans(request, context), request.options, context);
-  result.stored =
-      change_or_create(db, [&](Store& store) { return store.insert(result.record, context); });
+  result.stored = change_or_create(db, [&](Store& store) {
+    return store.insert(result.record, context, {make_scene_index, code_format()});
+  });
   return result;
 }
 

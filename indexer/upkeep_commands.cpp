@@ -8,6 +8,7 @@
 #include "cli/help.hpp"
 #include "cli/table.hpp"
 #include "engine/base/error.hpp"
+#include "engine/matching/code_bytes.hpp"
 #include "engine/mono/model_triples.hpp"
 #include "engine/mono/search_tables.hpp"
 #include "indexer/commands.hpp"
@@ -25,6 +26,8 @@ std::string lines(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) text += cli::printable(sentence) + '\n';
   return text;
 }
+
+SceneDeriver scene_deriver() { return {make_scene_index, code_format()}; }
 
 ModelDeriver model_deriver() { return {make_triples, make_model_index, model_index_format()}; }
 
@@ -53,8 +56,8 @@ int run_check(const Program& program) {
 
 int run_repair(const Program& program) {
   LongJob job(program);
-  const RepairReport report =
-      Store::open_read_write(program.database()).repair(job.context(), model_deriver());
+  const RepairReport report = Store::open_read_write(program.database())
+                                  .repair(job.context(), model_deriver(), scene_deriver());
   job.finish_progress();
   std::string text = lines(report.repaired);
   for (const std::string& left : report.remaining) text += "not repaired: " + left + '\n';
@@ -88,8 +91,8 @@ int run_migrate(bool dry_run, const Program& program) {
 
 int run_optimize(const Program& program) {
   LongJob job(program);
-  const OptimizeReport report =
-      Store::open_read_write(program.database()).optimize(job.context(), model_deriver());
+  const OptimizeReport report = Store::open_read_write(program.database())
+                                    .optimize(job.context(), model_deriver(), scene_deriver());
   job.finish_progress();
   program.print({{"dropped", report.dropped},
                  {"renewed", report.renewed},

@@ -13,6 +13,7 @@ namespace {
 // A week: whoever asks for more wants none at all.
 constexpr double kMaxDeadline_s = 604'800.0;
 constexpr int kMaxThreads = 1024;
+constexpr std::uint64_t kMostBudgetMib = std::uint64_t{1} << 24U;  // 16 TiB
 
 }  // namespace
 
@@ -51,6 +52,12 @@ void add_server_options(CLI::App& app, CommandLine& line) {
       ->type_name("N")
       ->check(CLI::Range(1, 60'000))
       ->capture_default_str();
+  app.add_option("--memory-budget",
+                 line.memory_budget_mib,
+                 "Of a database too large to be held, the scenes kept in memory, MiB")
+      ->type_name("MiB")
+      ->check(CLI::Range(std::uint64_t{0}, kMostBudgetMib))
+      ->capture_default_str();
   app.add_option("--deadline", line.deadline_s, "Longest time for a query, seconds")
       ->type_name("S")
       ->capture_default_str();
@@ -68,6 +75,7 @@ void add_server_options(CLI::App& app, CommandLine& line) {
 ServerOptions server_options(const CommandLine& line) {
   ServerOptions options = line.options;
   options.max_message_bytes = static_cast<std::size_t>(line.max_message_mib) * 1024 * 1024;
+  options.scene_memory_bytes = static_cast<std::size_t>(line.memory_budget_mib) << 20U;
   if (!(line.deadline_s >= 0.001 && line.deadline_s <= kMaxDeadline_s)) {
     throw cli::UsageError("--deadline", "want seconds, 0.001 to a week");
   }

@@ -13,6 +13,7 @@ struct CommandLine {
   ServerOptions options;
   std::string token_file;
   std::uint64_t max_message_mib = kDefaultMaxMessageBytes / (1024 * 1024);
+  std::uint64_t memory_budget_mib = 1024;
   double deadline_s = 60.0;
   std::string log_level = "info";
 };

@@ -66,18 +66,22 @@ void Dispatcher::submit(const std::shared_ptr<Job>& job, Answer answer) {
     run(*job, answer);
     return;
   }
-  if (!enqueue(lane, job, answer) && job->claim()) {
-    ++counters_.rejected_total;
-    answer(refuse(*job,
-                  ErrorCode::kResourceExhausted,
-                  "too many requests are waiting already; try again shortly"));
-  }
+  if (!enqueue(lane, job, answer)) turn_away(*job, answer);
+}
+
+void Dispatcher::turn_away(Job& job, const Answer& answer) {
+  if (!job.claim()) return;
+  ++counters_.rejected_total;
+  answer(refuse(job,
+                ErrorCode::kResourceExhausted,
+                "too many requests are waiting already; try again shortly"));
 }
 
 bool Dispatcher::enqueue(Lane lane, const std::shared_ptr<Job>& job, const Answer& answer) {
   const auto work = [this, job, answer] { run(*job, answer); };
   if (lane == Lane::kTrack && job->tracks) return TrackLine::post(job->tracks, compute_, work);
-  return (lane == Lane::kWrite ? writes_ : compute_).post(work);
+  return (lane == Lane::kWrite ? writes_ : compute_)
+      .post(job->connection, work, [this, job, answer] { turn_away(*job, answer); });
 }
 
 void Dispatcher::run(Job& job, const Answer& answer) {

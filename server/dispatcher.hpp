@@ -65,6 +65,8 @@ class Dispatcher {
  private:
   // False: the queue is full.
   bool enqueue(Lane lane, const std::shared_ptr<Job>& job, const Answer& answer);
+  // The answer of a queue that is full.
+  void turn_away(Job& job, const Answer& answer);
   // Works on the job, unless somebody has claimed it, and answers whatever happens.
   void run(Job& job, const Answer& answer);
   v1::Envelope work(Job& job);

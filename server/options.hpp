@@ -45,6 +45,8 @@ struct ServerOptions {
   std::uint64_t max_points = kDefaultMaxPoints;
   // Of the long messages that are being received or worked on, all connections together.
   std::size_t memory_budget_bytes = std::size_t{512} * 1024 * 1024;
+  // Of scenes that are read when a query needs them, what is kept.
+  std::size_t scene_memory_bytes = std::size_t{1} << 30U;
   // Requests that wait for a thread; more are turned away.
   std::size_t max_waiting_queries = 64;
   std::size_t max_waiting_writes = 16;

@@ -269,10 +269,14 @@ v1::StatsReply RequestHandler::stats() const {
   if (const std::shared_ptr<const Served> served = state_.served_or_null()) {
     reply.set_generation(served->generation);
     reply.set_scenes(served->scenes);
-    reply.set_quarantined(served->damaged.size() + served->damaged_models.size());
+    reply.set_quarantined(served->damaged().size() + served->damaged_models.size());
     reply.set_points(served->points);
     reply.set_keypoints(served->keypoints);
     reply.set_models(served->models->entries.size());
+    const LoadedScenes loaded = served->localizer->loaded();
+    reply.set_scenes_on_demand(loaded.scenes);
+    reply.set_scene_memory_bytes(loaded.bytes);
+    reply.set_scene_loads(loaded.loads);
   }
   reply.set_connections(counters_.connections);
   reply.set_connections_total(counters_.connections_total);
@@ -343,7 +347,7 @@ v1::ReloadReply RequestHandler::reload(const RunContext& context) {
   v1::ReloadReply reply;
   reply.set_generation(served->generation);
   reply.set_scenes(served->scenes);
-  reply.set_quarantined(served->damaged.size() + served->damaged_models.size());
+  reply.set_quarantined(served->damaged().size() + served->damaged_models.size());
   return reply;
 }
 

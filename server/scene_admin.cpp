@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
+#include "engine/matching/code_bytes.hpp"
 #include "engine/retrieval/describe_scene.hpp"
 #include "server/change_database.hpp"
 #include "server/convert_scene.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 std::string quarantine_reason(const Served* served, const SceneSummary& scene) {
   if (served == nullptr) return {};
-  for (const DamagedScene& damaged : served->damaged) {
+  for (const DamagedScene& damaged : served->damaged()) {
     if (damaged.scene_id == scene.id && damaged.version == scene.active_version) {
       return damaged.what;
     }
@@ -31,8 +32,18 @@ void add_bounds(const Served* served, v1::SceneInfo& message) {
   const auto entry = std::find_if(entries.begin(), entries.end(), [&](const CatalogEntry& e) {
     return e.scene_id == message.scene_id() && e.version == message.version();
   });
-  if (entry == entries.end() || entry->record->prepared.points.empty()) return;
-  const PreparedCloud& cloud = entry->record->prepared;
+  if (entry == entries.end()) return;
+  std::shared_ptr<const SceneRecord> record = entry->record;
+  if (entry->source != nullptr) {
+    try {
+      record = entry->source->load(SceneParts::kSurface, {});
+    } catch (const Error& error) {  // what is told of a damaged scene has no box
+      if (error.code() != ErrorCode::kDataLoss) throw;
+      return;
+    }
+  }
+  const PreparedCloud& cloud = record->prepared;
+  if (cloud.points.empty()) return;
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& point : cloud.points) box.extend(point);
   *message.mutable_min_m() = to_proto(cloud.origin + box.min().cast<double>());
@@ -69,7 +80,7 @@ v1::SceneReply SceneAdmin::add(const v1::SceneAddRequest& request,
   SceneAddition addition = from_proto(request, allowance);
   const SceneRecord record = describe_scene(
       std::move(addition.name), std::move(addition.scans), addition.options, context);
-  store.insert(record, context);
+  store.insert(record, context, {make_scene_index, code_format()});
   put_in_service(options_, state_);
   return show(record.name);
 }

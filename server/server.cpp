@@ -74,7 +74,7 @@ void write_port_file(const std::string& path, std::uint16_t port) {
 
 struct Server::State {
   State(const ServerOptions& given, Logger& logger)
-      : options(completed(given)), log(logger), state(options.db) {
+      : options(completed(given)), log(logger), state(options.db, localizer_options()) {
     const Store store = Store::open_read_only(options.db);
     for (const std::string& warning : store.warnings()) log.write(LogLevel::kWarning, warning);
     if (options.listen != "none") {
@@ -92,6 +92,15 @@ struct Server::State {
     if (!options.port_file.empty()) write_port_file(options.port_file, port);
   }
 
+  LocalizerOptions localizer_options() {
+    LocalizerOptions localizer;
+    localizer.scene_memory_bytes = options.scene_memory_bytes;
+    localizer.on_damaged = [this](const CatalogEntry& entry, const std::string& what) {
+      log.write(
+          LogLevel::kError, "scene left out", {{"scene", entry.record->name}, {"reason", what}});
+    };
+    return localizer;
+  }
   void load(bool first);
   void accept(Connection::Socket socket, std::string peer);
   SessionEvents events_of(std::uint64_t id);
@@ -142,7 +151,7 @@ void Server::State::load(bool first) {
     try {
       const std::shared_ptr<const Served> served = state.reload(context);
       ++counters.reloads_total;
-      for (const DamagedScene& scene : served->damaged) {
+      for (const DamagedScene& scene : served->unreadable) {
         log.write(
             LogLevel::kError, "scene left out", {{"scene", scene.name}, {"reason", scene.what}});
       }

@@ -54,35 +54,45 @@ void build_models(const Store& store,
 
 // What is in the database now; `previous` itself when nothing has changed since.
 std::shared_ptr<const Served> build(const std::string& db_path,
+                                    const LocalizerOptions& options,
                                     const std::shared_ptr<const Served>& previous,
                                     const RunContext& context) {
   auto served = std::make_shared<Served>();
   std::shared_ptr<const Catalog> catalog;
   {
     const Store store = Store::open_read_only(db_path);
-    catalog = store.load_catalog(
+    catalog = store.load_outlines(
         context,
-        [&](const DamagedScene& scene) { served->damaged.push_back(scene); },
+        [&](const DamagedScene& scene) { served->unreadable.push_back(scene); },
         previous ? &previous->localizer->catalog() : nullptr);
     build_models(store, previous.get(), context, *served);
   }
-  const bool whole = served->damaged.empty() && served->damaged_models.empty();
+  const bool whole = served->unreadable.empty() && served->damaged_models.empty();
   const bool same_scenes = previous && same_content(*catalog, previous->localizer->catalog());
-  if (whole && same_scenes && previous->damaged.empty() && previous->damaged_models.empty() &&
+  if (whole && same_scenes && previous->damaged().empty() && previous->damaged_models.empty() &&
       served->recognizer == previous->recognizer) {
     return previous;
   }
-  served->localizer = std::make_shared<const Localizer>(catalog, context);
+  served->localizer = std::make_shared<const Localizer>(catalog, context, options);
   served->generation = catalog->generation;
-  served->scenes = catalog->entries.size();
+  served->scenes = catalog->entries.size() - served->localizer->damaged().size();
   for (const CatalogEntry& entry : catalog->entries) {
-    served->points += entry.record->prepared.size();
-    served->keypoints += entry.record->descriptors.size();
+    served->points += entry.points;
+    served->keypoints += entry.keypoints;
   }
   return served;
 }
 
 }  // namespace
+
+std::vector<DamagedScene> Served::damaged() const {
+  std::vector<DamagedScene> all = unreadable;
+  for (const auto& [index, what] : localizer->damaged()) {
+    const CatalogEntry& entry = localizer->catalog().entries[index];
+    all.push_back({entry.scene_id, entry.record->name, entry.version, what});
+  }
+  return all;
+}
 
 std::shared_ptr<const Served> ServerState::served_or_null() const {
   const std::lock_guard lock(mutex_);
@@ -102,7 +112,7 @@ std::shared_ptr<const Served> ServerState::reload(const RunContext& context) {
   const std::lock_guard one_at_a_time(reload_mutex_);
   try {
     const std::shared_ptr<const Served> previous = served_or_null();
-    std::shared_ptr<const Served> next = build(db_path_, previous, context);
+    std::shared_ptr<const Served> next = build(db_path_, localizer_options_, previous, context);
     const std::lock_guard lock(mutex_);
     served_ = next;
     failure_.clear();
@@ -122,7 +132,7 @@ Health ServerState::health() const {
   Health health;
   if (served_) {
     health.phase = Phase::kServing;
-    for (const DamagedScene& scene : served_->damaged) {
+    for (const DamagedScene& scene : served_->damaged()) {
       health.quarantined.push_back(scene.name);
       health.problems.push_back("scene '" + scene.name + "' version " +
                                 std::to_string(scene.version) + " is damaged and not served (" +

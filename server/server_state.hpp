@@ -22,10 +22,14 @@ struct Served {
   std::shared_ptr<const Localizer> localizer;
   std::shared_ptr<const MonoCatalog> models;
   std::shared_ptr<const Recognizer> recognizer;  // of these models
-  std::vector<DamagedScene> damaged;             // left out, in quarantine
+  std::vector<DamagedScene> unreadable;          // scenes the catalogue had to leave out
   std::vector<DamagedModel> damaged_models;      // the same
   std::uint64_t generation = 0;
   std::uint64_t scenes = 0, points = 0, keypoints = 0;
+
+  // All scenes that answer nothing for damage: those left out, and those set aside when they were
+  // read for a query.
+  std::vector<DamagedScene> damaged() const;
 };
 
 enum class Phase { kStarting, kServing, kFailed, kStopping };
@@ -40,7 +44,9 @@ struct Health {
 // Thread-safe.
 class ServerState {
  public:
-  explicit ServerState(std::string db_path) : db_path_(std::move(db_path)) {}
+  // `localizer`: of each catalogue; what it says of damage is said to it from any thread.
+  explicit ServerState(std::string db_path, LocalizerOptions localizer = {})
+      : db_path_(std::move(db_path)), localizer_options_(std::move(localizer)) {}
 
   const std::string& db_path() const { return db_path_; }
 
@@ -61,6 +67,7 @@ class ServerState {
 
  private:
   std::string db_path_;
+  LocalizerOptions localizer_options_;
   std::stop_source stop_source_;
   std::mutex reload_mutex_;
   mutable std::mutex mutex_;  // guards all below

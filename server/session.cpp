@@ -33,7 +33,7 @@ Session::Session(Socket socket,
       peer_(std::move(peer)),
       services_(services),
       events_(std::move(events)),
-      tracks_(std::make_shared<TrackLine>(services.counters)) {}
+      tracks_(std::make_shared<TrackLine>(services.counters, id)) {}
 
 void Session::start() {
   boost::asio::dispatch(

@@ -19,7 +19,9 @@ class TrackLine {
  public:
   using Work = std::function<void()>;
 
-  explicit TrackLine(Counters& counters) : tracks_(counters) {}
+  // `owner`: whose turn in the queue its work takes.
+  explicit TrackLine(Counters& counters, WorkQueue::Owner owner = 0)
+      : tracks_(counters), owner_(owner) {}
 
   // Only for the work itself.
   TrackStore& tracks() { return tracks_; }
@@ -30,7 +32,7 @@ class TrackLine {
     line->waiting_.push_back(std::move(work));
     if (line->running_) return true;
     try {
-      line->running_ = queue.post([line, &queue] { run(line, queue); });
+      line->running_ = queue.post(line->owner_, [line, &queue] { run(line, queue); });
     } catch (...) {
       line->waiting_.pop_back();
       throw;
@@ -54,7 +56,7 @@ class TrackLine {
       if (!line->running_) break;
       bool queued = false;
       try {
-        queued = queue.post([line, &queue] { run(line, queue); });
+        queued = queue.post(line->owner_, [line, &queue] { run(line, queue); });
       } catch (...) {
         queued = false;  // then it goes on here
       }
@@ -71,6 +73,7 @@ class TrackLine {
   }
 
   TrackStore tracks_;
+  const WorkQueue::Owner owner_;
   std::mutex mutex_;  // guards what is below
   std::deque<Work> waiting_;
   bool running_ = false;

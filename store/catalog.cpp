@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
+#include "store/scene_source.hpp"
 #include "store/segment_rows.hpp"
 
 namespace landmarkdb {
@@ -12,21 +13,46 @@ namespace {
 using sqlite::Database;
 using sqlite::Transaction;
 
-std::shared_ptr<const SceneRecord> find_record(const Catalog* catalog, const VersionRow& row) {
+const CatalogEntry* find_entry(const Catalog* catalog, const VersionRow& row) {
   if (catalog == nullptr) return nullptr;
   for (const CatalogEntry& entry : catalog->entries) {
     // The digest tells the same version from one of another file that took this one's place.
     if (entry.scene_id == row.scene_id && entry.version == row.version && entry.record &&
         entry.record->name == row.scene && !row.sha256.empty() && entry.sha256 == row.sha256) {
-      return entry.record;
+      return &entry;
     }
   }
   return nullptr;
 }
 
+std::uint64_t rows_of(const Manifest& manifest, std::string_view array) {
+  for (const ArrayInfo& info : manifest.arrays) {
+    if (info.name == array && !info.shape.empty()) return info.shape[0];
+  }
+  return 0;
+}
+
+void fill_outline(const Database& database, const VersionRow& row, CatalogEntry& entry) {
+  const Manifest manifest = read_manifest(database, row.segment_id, row.what());
+  entry.record = std::make_shared<const SceneRecord>(outline_of(manifest, row.scene, row.what()));
+  entry.points = rows_of(manifest, "points");
+  entry.keypoints = rows_of(manifest, "keypoints");
+  entry.source = make_scene_source(database.path(), row);
+}
+
+void fill_whole(const Database& database,
+                const VersionRow& row,
+                const RunContext& context,
+                CatalogEntry& entry) {
+  entry.record = load_record(database, row, context);
+  entry.points = entry.record->prepared.size();
+  entry.keypoints = entry.record->descriptors.size();
+}
+
 // The scene as it is now; nothing where it was removed since `scene_id` was listed.
 std::optional<CatalogEntry> load_entry(const Database& database,
                                        std::int64_t scene_id,
+                                       Loading loading,
                                        const Catalog* previous,
                                        const RunContext& context,
                                        DamagedScene& damage) {
@@ -53,8 +79,17 @@ std::optional<CatalogEntry> load_entry(const Database& database,
     entry.sha256 = active->sha256;
     entry.tags = read_tags(database, scene_id);
     entry.landmarks = read_landmarks(database, scene_id);
-    entry.record = find_record(previous, *active);
-    if (!entry.record) entry.record = load_record(database, *active, context);
+    const CatalogEntry* same = find_entry(previous, *active);
+    if (same != nullptr && (same->source != nullptr) == (loading == Loading::kOutlines)) {
+      entry.record = same->record;
+      entry.source = same->source;
+      entry.points = same->points;
+      entry.keypoints = same->keypoints;
+    } else if (loading == Loading::kOutlines) {
+      fill_outline(database, *active, entry);
+    } else {
+      fill_whole(database, *active, context, entry);
+    }
     return entry;
   } catch (const Error& error) {
     // A segment of a format we do not know harms its own scene only, as damage does.
@@ -66,9 +101,12 @@ std::optional<CatalogEntry> load_entry(const Database& database,
 
 }  // namespace
 
-Segment load_segment(const Database& database, const VersionRow& row, const RunContext& context) {
+Segment load_segment(const Database& database,
+                     const VersionRow& row,
+                     const RunContext& context,
+                     SceneParts parts) {
   try {
-    return read_segment(database, row.segment_id, row.what(), context);
+    return read_segment(database, row.segment_id, row.what(), context, parts);
   } catch (const Error& error) {
     const std::string message = error.what();
     if (error.code() != ErrorCode::kDataLoss || message.starts_with(row.what())) throw;
@@ -78,12 +116,14 @@ Segment load_segment(const Database& database, const VersionRow& row, const RunC
 
 std::shared_ptr<const SceneRecord> load_record(const Database& database,
                                                const VersionRow& row,
-                                               const RunContext& context) {
+                                               const RunContext& context,
+                                               SceneParts parts) {
   return std::make_shared<const SceneRecord>(
-      decode_segment(load_segment(database, row, context), row.scene, row.what()));
+      decode_segment(load_segment(database, row, context, parts), row.scene, row.what(), parts));
 }
 
 std::shared_ptr<const Catalog> load_catalog(const Database& database,
+                                            Loading loading,
                                             const RunContext& context,
                                             const OnDamaged& on_damaged,
                                             const Catalog* previous) {
@@ -98,7 +138,8 @@ std::shared_ptr<const Catalog> load_catalog(const Database& database,
   for (std::size_t i = 0; i < ids.size(); ++i) {
     context.report("load", i, ids.size());
     DamagedScene damage;
-    std::optional<CatalogEntry> entry = load_entry(database, ids[i], previous, context, damage);
+    std::optional<CatalogEntry> entry =
+        load_entry(database, ids[i], loading, previous, context, damage);
     if (entry) {
       catalog->entries.push_back(std::move(*entry));
     } else if (!damage.what.empty() && on_damaged) {

@@ -16,13 +16,17 @@ namespace landmarkdb {
 // Failures that name the database only (a damaged page) come to name the version too.
 Segment load_segment(const sqlite::Database& database,
                      const VersionRow& row,
-                     const RunContext& context = {});
+                     const RunContext& context = {},
+                     SceneParts parts = SceneParts::kWhole);
 std::shared_ptr<const SceneRecord> load_record(const sqlite::Database& database,
                                                const VersionRow& row,
-                                               const RunContext& context = {});
+                                               const RunContext& context = {},
+                                               SceneParts parts = SceneParts::kWhole);
 
-// Store::load_catalog; a read transaction a scene.
+// Store::load_catalog and load_outlines; a read transaction a scene.
+enum class Loading { kWhole, kOutlines };
 std::shared_ptr<const Catalog> load_catalog(const sqlite::Database& database,
+                                            Loading loading,
                                             const RunContext& context,
                                             const OnDamaged& on_damaged,
                                             const Catalog* previous);

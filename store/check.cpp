@@ -6,6 +6,7 @@
 #include "store/catalog.hpp"
 #include "store/model_check.hpp"
 #include "store/reference_schema.hpp"
+#include "store/scene_index.hpp"
 #include "store/segment_rows.hpp"
 
 namespace landmarkdb {
@@ -45,7 +46,8 @@ void check_references(const Database& database, std::vector<std::string>& findin
 void check_orphans(const Database& database, std::vector<std::string>& findings) {
   for (const auto& [from, name] : {std::pair{kOrphanSegments, "segments"},
                                    std::pair{kOrphanArrays, "arrays"},
-                                   std::pair{kOrphanChunks, "chunks"}}) {
+                                   std::pair{kOrphanChunks, "chunks"},
+                                   std::pair{kOrphanIndexes, "search indexes of scenes"}}) {
     const std::int64_t count = database.integer(std::string("SELECT count(*) ") + from);
     if (count > 0) {
       findings.push_back(std::to_string(count) + " " + name +
@@ -84,6 +86,9 @@ void check_version(const Database& database, const VersionRow& row, CheckReport&
     report.findings.push_back(row.what() +
                               ": what is listed of it disagrees with its manifest; `repair` "
                               "writes it anew");
+  }
+  if (has_scene_index(database, row.segment_id) && !read_scene_index(database, row)) {
+    report.findings.push_back(row.what() + ": its search index is damaged; `repair` makes it anew");
   }
   if (row.damage) {
     report.findings.push_back(row.what() + " is marked as damaged (" + *row.damage +

@@ -32,5 +32,7 @@ inline constexpr const char* kOrphanArrays =
     "FROM segment_array WHERE segment_id NOT IN (SELECT id FROM segment)";
 inline constexpr const char* kOrphanChunks =
     "FROM segment_chunk WHERE array_id NOT IN (SELECT id FROM segment_array)";
+inline constexpr const char* kOrphanIndexes =
+    "FROM scene_index WHERE segment_id NOT IN (SELECT id FROM segment)";
 
 }  // namespace landmarkdb

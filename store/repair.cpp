@@ -9,6 +9,7 @@
 #include "store/model_check.hpp"
 #include "store/reference_schema.hpp"
 #include "store/scene_changes.hpp"
+#include "store/scene_index.hpp"
 #include "store/scene_rows.hpp"
 #include "store/segment_rows.hpp"
 #include "store/version_columns.hpp"
@@ -80,6 +81,7 @@ void repair_orphans(const Database& database, RepairReport& report) {
   drop(kOrphanSegments, "segments");
   drop(kOrphanArrays, "arrays");
   drop(kOrphanChunks, "chunks");
+  drop(kOrphanIndexes, "search indexes of scenes");
   drop("FROM tag WHERE scene_id NOT IN (SELECT id FROM scene)", "tags");
   drop("FROM landmark WHERE scene_id NOT IN (SELECT id FROM scene)", "landmarks");
   if (dropped > 0) transaction.commit();
@@ -116,7 +118,11 @@ std::string advice_for(const VersionRow& row) {
   return "; `rollback " + row.scene + "` goes back to an earlier version, `add` makes a new one";
 }
 
-void repair_version(const Database& database, const VersionRow& row, RepairReport& report) {
+void repair_version(const Database& database,
+                    const VersionRow& row,
+                    const RunContext& context,
+                    const SceneDeriver& deriver,
+                    RepairReport& report) {
   Transaction transaction(database, kWrite);
   std::uint64_t bytes = 0;
   const std::optional<std::string> damage = version_damage(database, row, bytes);
@@ -133,6 +139,10 @@ void repair_version(const Database& database, const VersionRow& row, RepairRepor
     if (!columns_agree(database, row, manifest)) {
       write_version_columns(database, row.scene_id, row.version, columns_of(manifest));
       report.repaired.push_back(row.what() + ": what is listed of it was written anew");
+      changed = true;
+    }
+    if (const auto renewed = renew_scene_index(database, row, deriver, context)) {
+      report.repaired.push_back(*renewed);
       changed = true;
     }
     if (row.damage) {
@@ -159,7 +169,8 @@ void note_inactive_scenes(const Database& database, RepairReport& report) {
 
 RepairReport repair_database(const Database& database,
                              const RunContext& context,
-                             const ModelDeriver& deriver) {
+                             const ModelDeriver& deriver,
+                             const SceneDeriver& scene_deriver) {
   RepairReport report;
   context.check("repair");
   attempt(report, [&] { repair_schema(database, report); });
@@ -170,7 +181,8 @@ RepairReport repair_database(const Database& database,
     const std::vector<VersionRow> versions = read_versions(database);
     for (std::size_t i = 0; i < versions.size(); ++i) {
       context.report("repair", i, versions.size());
-      attempt(report, [&] { repair_version(database, versions[i], report); });
+      attempt(report,
+              [&] { repair_version(database, versions[i], context, scene_deriver, report); });
     }
     note_inactive_scenes(database, report);
   });

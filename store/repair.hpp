@@ -10,6 +10,7 @@ namespace landmarkdb {
 // Store::repair. Each kind of repair is a transaction of its own.
 RepairReport repair_database(const sqlite::Database& database,
                              const RunContext& context,
-                             const ModelDeriver& deriver);
+                             const ModelDeriver& deriver,
+                             const SceneDeriver& scene_deriver);
 
 }  // namespace landmarkdb

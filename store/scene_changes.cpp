@@ -6,6 +6,7 @@
 
 #include "engine/base/error.hpp"
 #include "store/names.hpp"
+#include "store/scene_index.hpp"
 #include "store/scene_rows.hpp"
 #include "store/segment_rows.hpp"
 #include "store/version_columns.hpp"
@@ -143,7 +144,8 @@ InsertResult insert_version(const Database& database,
                             const std::string& name,
                             const Segment& segment,
                             const SceneExtras& extras,
-                            const RunContext& context) {
+                            const RunContext& context,
+                            const SceneDeriver& deriver) {
   validate_name(name, "scene name");
   for (const auto& [key, value] : extras.tags) {
     validate_name(key, "tag key");
@@ -151,11 +153,13 @@ InsertResult insert_version(const Database& database,
   }
   for (const Landmark& landmark : extras.landmarks) validate_landmark(landmark);
 
+  const std::optional<SceneIndexBlob> index = derive_scene_index(segment, deriver, context);
   Transaction transaction(database, kWrite);
   InsertResult result;
   result.scene_id = make_scene(database, name);
   result.version = next_version(database, result.scene_id);
   const std::int64_t segment_id = write_segment(database, segment, context);
+  if (index) write_scene_index(database, segment_id, segment.sha256, *index);
   const std::string now = utc_now();
   Statement insert(database,
                    "INSERT INTO scene_version (scene_id, version, segment_id, state, created, "

@@ -23,12 +23,13 @@ struct SceneExtras {
 };
 
 // Adds a version of the scene `name` (made where there is none) and activates it; `extras` are
-// added to what the scene has.
+// added to what the scene has, what `deriver` makes is stored with the version.
 InsertResult insert_version(const sqlite::Database& database,
                             const std::string& name,
                             const Segment& segment,
                             const SceneExtras& extras,
-                            const RunContext& context);
+                            const RunContext& context,
+                            const SceneDeriver& deriver = {});
 
 void remove_scene(const sqlite::Database& database, std::string_view name);
 void rename_scene(const sqlite::Database& database,

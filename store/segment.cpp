@@ -9,6 +9,8 @@
 namespace landmarkdb {
 namespace {
 
+constexpr std::string_view kDescriptors = "descriptors";
+
 void add_array(Segment& segment,
                std::string name,
                DType dtype,
@@ -32,6 +34,23 @@ Manifest manifest_of(const SceneRecord& record) {
   m.sources = record.sources;
   m.warnings = record.warnings;
   return m;
+}
+
+// All that the manifest says.
+SceneRecord record_from(const Manifest& manifest, std::string name) {
+  SceneRecord record;
+  record.name = std::move(name);
+  record.kind = manifest.kind;
+  record.options = manifest.options;
+  record.up = manifest.up;
+  record.sources = manifest.sources;
+  record.warnings = manifest.warnings;
+  record.prepared.origin = manifest.origin_m;
+  record.prepared.resolution_m = manifest.resolution_m;
+  record.prepared.normals_from_viewpoint = manifest.normals_from_viewpoint;
+  record.prepared.counts = manifest.counts;
+  record.descriptors.dropped = manifest.dropped_keypoints;
+  return record;
 }
 
 // Hands out the arrays of a segment by name, each with the type and shape that the caller expects.
@@ -111,7 +130,7 @@ bool lengths_are_positive(const SceneRecord& record) {
 }
 
 // The first thing wrong with the record; empty where all is well.
-std::string fault_of(const SceneRecord& record) {
+std::string fault_of(const SceneRecord& record, SceneParts parts) {
   const PreparedCloud& cloud = record.prepared;
   const DescriptorSet& set = record.descriptors;
   const auto count = [](std::size_t n) { return std::to_string(n); };
@@ -128,8 +147,10 @@ std::string fault_of(const SceneRecord& record) {
              " viewpoints";
     }
   }
-  if (set.normals.size() != set.size() || set.frames.size() != set.size() ||
-      set.values.size() != set.size() * kShotLength) {
+  const std::size_t want_values = parts == SceneParts::kWhole ? set.size() * kShotLength : 0;
+  const std::size_t want_normals = parts == SceneParts::kKeypoints ? 0 : set.size();
+  if (set.normals.size() != want_normals || set.frames.size() != set.size() ||
+      set.values.size() != want_values) {
     return "has " + count(set.size()) + " keypoints, " + count(set.normals.size()) +
            " keypoint normals, " + count(set.frames.size()) + " frames and " +
            count(set.values.size()) + " descriptor values, want n, n, n and n * 352";
@@ -169,7 +190,7 @@ std::uint64_t Segment::bytes() const {
 }
 
 void validate_record(const SceneRecord& record, const std::string& what, ErrorCode code) {
-  const std::string fault = fault_of(record);
+  const std::string fault = fault_of(record, SceneParts::kWhole);
   if (!fault.empty()) throw Error(code, what + " " + fault);
 }
 
@@ -197,40 +218,63 @@ Segment encode_segment(const SceneRecord& record) {
   add_array(segment, "keypoints", DType::kFloat32, {k, 3}, bytes_of(set.keypoints));
   add_array(segment, "keypoint_normals", DType::kFloat32, {k, 3}, bytes_of(set.normals));
   add_array(segment, "keypoint_frames", DType::kFloat32, {k, 4}, quaternions_of(set.frames, what));
-  add_array(segment, "descriptors", DType::kFloat16, {k, kShotLength}, halves_of(set.values, what));
+  add_array(segment,
+            std::string(kDescriptors),
+            DType::kFloat16,
+            {k, kShotLength},
+            halves_of(set.values, what));
   segment.manifest_json = manifest_to_json(segment.manifest);
   segment.sha256 = sha256_of(segment.manifest_json);
   return segment;
 }
 
-SceneRecord decode_segment(Segment segment, std::string name, const std::string& what) {
+SceneRecord outline_of(const Manifest& manifest, std::string name, const std::string& what) {
+  SceneRecord record = record_from(manifest, std::move(name));
+  const std::string fault = fault_of(record, SceneParts::kKeypoints);
+  if (!fault.empty()) throw Error(ErrorCode::kDataLoss, what + " " + fault);
+  return record;
+}
+
+bool is_part(std::string_view array, SceneParts parts) {
+  if (parts == SceneParts::kKeypoints) return array == "keypoints" || array == "keypoint_frames";
+  return parts == SceneParts::kWhole || array != kDescriptors;
+}
+
+std::optional<std::vector<float>> descriptor_values(const Segment& segment) {
+  for (std::size_t i = 0; i < segment.manifest.arrays.size(); ++i) {
+    const ArrayInfo& info = segment.manifest.arrays[i];
+    if (info.name != kDescriptors) continue;
+    if (info.dtype != DType::kFloat16 || info.shape.size() != 2 || info.shape[1] != kShotLength) {
+      return std::nullopt;
+    }
+    return unit_rows_from(segment.arrays[i], kShotLength);
+  }
+  return std::nullopt;
+}
+
+SceneRecord decode_segment(Segment segment,
+                           std::string name,
+                           const std::string& what,
+                           SceneParts parts) {
   ArrayTaker arrays(segment, what);
-  SceneRecord record;
-  record.name = std::move(name);
-  record.kind = segment.manifest.kind;
-  record.options = segment.manifest.options;
-  record.up = segment.manifest.up;
-  record.sources = segment.manifest.sources;
-  record.warnings = segment.manifest.warnings;
-
+  SceneRecord record = record_from(segment.manifest, std::move(name));
   PreparedCloud& cloud = record.prepared;
-  cloud.points = vectors_from(arrays.take("points", DType::kFloat32, 3));
-  cloud.normals = vectors_from(arrays.take("normals", DType::kFloat32, 3));
-  cloud.viewpoints = vectors_from(arrays.take("viewpoints", DType::kFloat32, 3));
-  cloud.viewpoint_index = indices_from(arrays.take("viewpoint_index", DType::kUint16, 0));
-  cloud.origin = segment.manifest.origin_m;
-  cloud.resolution_m = segment.manifest.resolution_m;
-  cloud.normals_from_viewpoint = segment.manifest.normals_from_viewpoint;
-  cloud.counts = segment.manifest.counts;
-
   DescriptorSet& set = record.descriptors;
+  if (parts != SceneParts::kKeypoints) {
+    cloud.points = vectors_from(arrays.take("points", DType::kFloat32, 3));
+    cloud.normals = vectors_from(arrays.take("normals", DType::kFloat32, 3));
+    cloud.viewpoints = vectors_from(arrays.take("viewpoints", DType::kFloat32, 3));
+    cloud.viewpoint_index = indices_from(arrays.take("viewpoint_index", DType::kUint16, 0));
+    set.normals = vectors_from(arrays.take("keypoint_normals", DType::kFloat32, 3));
+  }
   set.keypoints = vectors_from(arrays.take("keypoints", DType::kFloat32, 3));
-  set.normals = vectors_from(arrays.take("keypoint_normals", DType::kFloat32, 3));
   set.frames = frames_from(arrays.take("keypoint_frames", DType::kFloat32, 4), what);
-  set.values =
-      unit_rows_from(arrays.take("descriptors", DType::kFloat16, kShotLength), kShotLength);
-  set.dropped = segment.manifest.dropped_keypoints;
-  validate_record(record, what, ErrorCode::kDataLoss);
+  if (parts == SceneParts::kWhole) {
+    set.values =
+        unit_rows_from(arrays.take(kDescriptors, DType::kFloat16, kShotLength), kShotLength);
+  }
+  const std::string fault = fault_of(record, parts);
+  if (!fault.empty()) throw Error(ErrorCode::kDataLoss, what + " " + fault);
   return record;
 }
 

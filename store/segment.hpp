@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,8 +35,22 @@ void validate_record(const SceneRecord& record, const std::string& what, ErrorCo
 Segment encode_segment(const SceneRecord& record);
 
 // The record of a segment whose digests have been checked; `segment` is consumed. Descriptor rows
-// are brought back to unit length. Throws Error{kDataLoss} beginning with `what`.
-SceneRecord decode_segment(Segment segment, std::string name, const std::string& what);
+// are brought back to unit length; without them where only the surface is wanted. Throws
+// Error{kDataLoss} beginning with `what`.
+SceneRecord decode_segment(Segment segment,
+                           std::string name,
+                           const std::string& what,
+                           SceneParts parts = SceneParts::kWhole);
+
+// What the manifest alone says of the record. Throws like decode_segment.
+SceneRecord outline_of(const Manifest& manifest, std::string name, const std::string& what);
+
+// True for the arrays that decode_segment needs for these parts, and for all it does not know.
+bool is_part(std::string_view array, SceneParts parts);
+
+// The descriptors of a segment as decode_segment gives them, N x kShotLength; nothing where they
+// are not as they should be.
+std::optional<std::vector<float>> descriptor_values(const Segment& segment);
 
 // Throws Error{kDataLoss} when `bytes` are not the array that `info` describes.
 void verify_array(const ArrayInfo& info, std::span<const std::byte> bytes, const std::string& what);

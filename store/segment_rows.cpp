@@ -156,7 +156,8 @@ std::int64_t write_segment(const Database& database,
 Segment read_segment(const Database& database,
                      std::int64_t segment_id,
                      const std::string& what,
-                     const RunContext& context) {
+                     const RunContext& context,
+                     SceneParts parts) {
   SegmentRow row = read_segment_row(database, segment_id, what);
   Segment segment;
   segment.manifest = manifest_from_json(row.manifest_json, what);
@@ -164,10 +165,14 @@ Segment read_segment(const Database& database,
   segment.sha256 = std::move(row.sha256);
   for (std::size_t i = 0; i < segment.manifest.arrays.size(); ++i) {
     const ArrayInfo& info = segment.manifest.arrays[i];
+    if (!is_part(info.name, parts)) {
+      segment.arrays.emplace_back();
+      continue;
+    }
     const std::int64_t array_id = find_array(database, segment_id, i, info, what);
     segment.arrays.push_back(read_array(database, array_id, info, what, context));
   }
-  if (segment.bytes() != row.bytes) {
+  if (parts == SceneParts::kWhole && segment.bytes() != row.bytes) {
     damaged(what,
             "its segment says " + std::to_string(row.bytes) + " bytes, its arrays have " +
                 std::to_string(segment.bytes()));

@@ -18,13 +18,14 @@ std::int64_t write_segment(const sqlite::Database& database,
                            const Segment& segment,
                            const RunContext& context);
 
-// Reads a segment and checks every digest. Nothing is allocated before the stored lengths agree
-// with the manifest. Throws Error{kDataLoss} beginning with `what`. Within the caller's
-// transaction.
+// Reads a segment and checks every digest; the arrays that `parts` leaves out stay empty. Nothing
+// is allocated before the stored lengths agree with the manifest. Throws Error{kDataLoss} beginning
+// with `what`. Within the caller's transaction.
 Segment read_segment(const sqlite::Database& database,
                      std::int64_t segment_id,
                      const std::string& what,
-                     const RunContext& context);
+                     const RunContext& context,
+                     SceneParts parts = SceneParts::kWhole);
 
 // The manifest alone, with its digest checked.
 Manifest read_manifest(const sqlite::Database& database,

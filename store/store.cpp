@@ -14,6 +14,7 @@
 #include "store/repair.hpp"
 #include "store/scene_changes.hpp"
 #include "store/scene_file.hpp"
+#include "store/scene_index.hpp"
 #include "store/scene_rows.hpp"
 #include "store/segment.hpp"
 #include "store/sqlite.hpp"
@@ -108,13 +109,26 @@ std::shared_ptr<const SceneRecord> Store::load(std::int64_t scene_id,
 std::shared_ptr<const Catalog> Store::load_catalog(const RunContext& context,
                                                    const OnDamaged& on_damaged,
                                                    const Catalog* previous) const {
-  return landmarkdb::load_catalog(state_->reader(), context, on_damaged, previous);
+  return landmarkdb::load_catalog(state_->reader(), Loading::kWhole, context, on_damaged, previous);
 }
 
-InsertResult Store::insert(const SceneRecord& record, const RunContext& context) {
+std::shared_ptr<const Catalog> Store::load_outlines(const RunContext& context,
+                                                    const OnDamaged& on_damaged,
+                                                    const Catalog* previous) const {
+  const bool elsewhere = state_->reader().path() != ":memory:";
+  return landmarkdb::load_catalog(state_->reader(),
+                                  elsewhere ? Loading::kOutlines : Loading::kWhole,
+                                  context,
+                                  on_damaged,
+                                  previous);
+}
+
+InsertResult Store::insert(const SceneRecord& record,
+                           const RunContext& context,
+                           const SceneDeriver& deriver) {
   const sqlite::Database& database = state_->writer();
   validate_name(record.name, "scene name");
-  return insert_version(database, record.name, encode_segment(record), {}, context);
+  return insert_version(database, record.name, encode_segment(record), {}, context, deriver);
 }
 
 void Store::remove(std::string_view name) { remove_scene(state_->writer(), name); }
@@ -156,17 +170,24 @@ CheckReport Store::check(const RunContext& context) const {
   return check_database(state_->reader(), context);
 }
 
-RepairReport Store::repair(const RunContext& context, const ModelDeriver& deriver) {
-  return repair_database(state_->writer(), context, deriver);
+RepairReport Store::repair(const RunContext& context,
+                           const ModelDeriver& deriver,
+                           const SceneDeriver& scene_deriver) {
+  return repair_database(state_->writer(), context, deriver, scene_deriver);
 }
 
-OptimizeReport Store::optimize(const RunContext& context, const ModelDeriver& deriver) {
+OptimizeReport Store::optimize(const RunContext& context,
+                               const ModelDeriver& deriver,
+                               const SceneDeriver& scene_deriver) {
   const sqlite::Database& database = state_->writer();
   OptimizeReport report;
   report.bytes_before = size().database_bytes;
   context.check("optimize");
   report.dropped = drop_old_versions(database);
-  report.renewed = renew_model_indexes(database, context, deriver);
+  if (scene_deriver.index) report.renewed = renew_scene_indexes(database, context, scene_deriver);
+  for (std::string& renewed : renew_model_indexes(database, context, deriver)) {
+    report.renewed.push_back(std::move(renewed));
+  }
   try {
     const sqlite::InterruptGuard guard(database, context);
     database.execute("ANALYZE");
@@ -213,12 +234,13 @@ void Store::export_scene(std::string_view name,
 
 InsertResult Store::import_scene(const std::string& path,
                                  const RunContext& context,
-                                 const std::optional<std::string>& as_name) {
+                                 const std::optional<std::string>& as_name,
+                                 const SceneDeriver& deriver) {
   const sqlite::Database& database = state_->writer();
   refuse_itself(database, path);
   const SceneFile file = read_scene_file(path, context);
   return insert_version(
-      database, as_name ? *as_name : file.name, file.segment, file.extras, context);
+      database, as_name ? *as_name : file.name, file.segment, file.extras, context, deriver);
 }
 
 }  // namespace landmarkdb

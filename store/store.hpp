@@ -75,9 +75,18 @@ class Store {
                                               const OnDamaged& on_damaged = {},
                                               const Catalog* previous = nullptr) const;
 
-  // Stores a version of `record.name` and activates it. Reports the stage "store" in bytes; a stop
-  // request between chunks leaves the database as it was.
-  InsertResult insert(const SceneRecord& record, const RunContext& context);
+  // The same without the scenes' arrays: each entry's record is an outline, and its source reads
+  // the rest from this file when it is asked to. Damage of an array is found then. A database in
+  // memory cannot be read from elsewhere and gives load_catalog's.
+  std::shared_ptr<const Catalog> load_outlines(const RunContext& context,
+                                               const OnDamaged& on_damaged = {},
+                                               const Catalog* previous = nullptr) const;
+
+  // Stores a version of `record.name` and activates it, with what `deriver` makes of it. Reports
+  // the stage "store" in bytes; a stop request between chunks leaves the database as it was.
+  InsertResult insert(const SceneRecord& record,
+                      const RunContext& context,
+                      const SceneDeriver& deriver = {});
 
   // Removes a scene with all its versions, tags and landmarks.
   void remove(std::string_view name);
@@ -120,12 +129,16 @@ class Store {
   // Rebuilds what is derived, drops what nothing refers to, marks damaged versions and models so
   // that they are not served. Never removes a scene or model or changes which version is active.
   // Damaged triples of models, and missing or outdated search indexes, are made anew where
-  // `deriver` says how.
-  RepairReport repair(const RunContext& context, const ModelDeriver& deriver = {});
+  // the derivers say how.
+  RepairReport repair(const RunContext& context,
+                      const ModelDeriver& deriver = {},
+                      const SceneDeriver& scene_deriver = {});
   // Lets go of versions other than the active one and the one `rollback` would go to, and gives the
-  // space back; makes search indexes of models as repair() does. Needs free disk space as large as
-  // the database for the time it runs.
-  OptimizeReport optimize(const RunContext& context, const ModelDeriver& deriver = {});
+  // space back; makes search indexes as repair() does. Needs free disk space as large as the
+  // database for the time it runs.
+  OptimizeReport optimize(const RunContext& context,
+                          const ModelDeriver& deriver = {},
+                          const SceneDeriver& scene_deriver = {});
 
   // Brings what was written so far into the database file itself and empties the log beside it;
   // Error{kUnavailable} while another connection reads or writes.
@@ -144,7 +157,8 @@ class Store {
   // version. Error{kInvalidArgument} for a file that is damaged, cut off or something else.
   InsertResult import_scene(const std::string& path,
                             const RunContext& context,
-                            const std::optional<std::string>& as_name = std::nullopt);
+                            const std::optional<std::string>& as_name = std::nullopt,
+                            const SceneDeriver& deriver = {});
 
  private:
   struct State;

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "engine/base/error.hpp"
+#include "engine/base/run_context.hpp"
 #include "engine/types/scene_record.hpp"
 
 namespace landmarkdb {
@@ -74,6 +75,13 @@ struct DamagedScene {
 };
 using OnDamaged = std::function<void(const DamagedScene&)>;
 
+// How what is derived from a scene is made; the store keeps it but does not know how. `values`:
+// N x kShotLength, as they are read back from the database.
+struct SceneDeriver {
+  std::function<SceneIndexBlob(const std::vector<float>& values, const RunContext&)> index{};
+  SceneIndexBlob index_format{};  // version and params of what `index` makes
+};
+
 // What `check` saw. Every finding is a sentence that names the scene, version and array at fault.
 struct CheckReport {
   std::vector<std::string> findings;
@@ -93,7 +101,7 @@ struct RepairReport {
 
 struct OptimizeReport {
   std::vector<std::string> dropped;  // versions that were let go, one sentence each
-  std::vector<std::string> renewed;  // search indexes of models that were made, the same
+  std::vector<std::string> renewed;  // search indexes that were made, the same
   std::uint64_t bytes_before = 0;    // of the database file
   std::uint64_t bytes_after = 0;
 };

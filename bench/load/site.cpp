@@ -12,6 +12,7 @@
 #include "datasets/sensor_poses.hpp"
 #include "datasets/subsample.hpp"
 #include "engine/base/error.hpp"
+#include "engine/matching/code_bytes.hpp"
 #include "engine/retrieval/describe_scene.hpp"
 #include "store/store.hpp"
 
@@ -79,7 +80,7 @@ std::size_t fill_database(const std::string& path,
     if (stored.contains(place_name(i))) continue;
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     if (took.count() > most_seconds) break;
-    store.insert(describe_place(options, i, context), context);
+    store.insert(describe_place(options, i, context), context, {make_scene_index, code_format()});
     stored.insert(place_name(i));
     ++made;
   }

@@ -37,7 +37,7 @@ Eigen::Isometry3d pose_of(const Proposal& proposal) {
 
 Funnel follow(const PointCloud& cloud,
               const QueryOptions& options,
-              std::span<const Entry> entries,
+              const std::vector<Entry>& entries,
               std::span<const Level> levels,
               std::size_t right_entry,
               const Eigen::Isometry3d& T_scene_sensor,
@@ -48,8 +48,8 @@ Funnel follow(const PointCloud& cloud,
   ViewCache views(query, options.seed, context, timings);
   const std::vector<bool> wanted(entries.size(), true);
   IndexCache indexes;
-  const SearchInput input{
-      query, options, entries, levels, wanted, views, indexes, timings, context};
+  Entries seen(entries);
+  const SearchInput input{query, options, seen, levels, wanted, views, indexes, timings, context};
   SearchResult result;
   search_places(input, result);
   const Entry& entry = entries[right_entry];

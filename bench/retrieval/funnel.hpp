@@ -32,7 +32,7 @@ struct Funnel {
 // Follows the right pose of a place through the search stage by stage.
 Funnel follow(const PointCloud& cloud,
               const QueryOptions& options,
-              std::span<const Entry> entries,
+              const std::vector<Entry>& entries,
               std::span<const Level> levels,
               std::size_t right_entry,
               const Eigen::Isometry3d& T_scene_sensor,

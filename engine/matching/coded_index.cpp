@@ -109,7 +109,9 @@ class CodedIndex : public DescriptorIndex {
       : options_(options) {
     std::vector<std::int8_t> centres;
     for (const CodedPart& part : parts) {
-      const std::size_t rows = part.values.size() / kShotLength;
+      const bool coded_only = part.values.empty();
+      const std::size_t rows = coded_only ? part.codes->size() : part.values.size() / kShotLength;
+      if (coded_only && rows > 0) compares_in_full_ = false;
       const std::string fault = fault_of_codes(*part.codes, rows);
       if (!fault.empty()) throw Error(ErrorCode::kInvalidArgument, "the index " + fault);
       if (rows >= kNoRow - size_) {
@@ -212,8 +214,12 @@ class CodedIndex : public DescriptorIndex {
     read_lists(block, wishes_for(chosen, probes, 0, first), shortlists, context);
     read_lists(block, wishes_for(chosen, probes, first, probes), shortlists, context);
     for (std::size_t i = 0; i < block.size() && !context.should_stop(); ++i) {
-      const std::span<Candidate> best = refine(block.tail(i), shortlists[i].best(), compared);
-      compare(block.row(i), best, k, out.data() + (block.begin + i) * k);
+      DescriptorMatch* found = out.data() + (block.begin + i) * k;
+      if (compares_in_full_) {
+        compare(block.row(i), refine(block.tail(i), shortlists[i].best(), compared), k, found);
+      } else {
+        rank(block.code(i), refine(block.tail(i), shortlists[i].best(), k), k, found);
+      }
     }
   }
 
@@ -355,7 +361,24 @@ class CodedIndex : public DescriptorIndex {
     nearest.write(out);
   }
 
+  // The nearest by code and tail alone. A score is |a|^2 + 256 sum(a) less the squared distance.
+  static void rank(const std::int8_t* code,
+                   std::span<const Candidate> candidates,
+                   std::size_t k,
+                   DescriptorMatch* out) {
+    constexpr std::int32_t kOffset = 2 * 128;  // see CodeKernels
+    std::int32_t at_zero = 0;
+    for (std::size_t j = 0; j < kCodeLength; ++j) at_zero += code[j] * (code[j] + kOffset);
+    NearestList nearest(k);
+    for (const Candidate candidate : candidates) {
+      const std::int32_t squared = std::max(at_zero - score_of(candidate), 0);
+      nearest.offer({row_of(candidate), dissimilarity_of_codes(squared)});
+    }
+    nearest.write(out);
+  }
+
   CodedSearchOptions options_;
+  bool compares_in_full_ = true;
   PackedCodes codes_;                    // each list begins a group
   std::vector<std::uint32_t> row_of_;    // by place in `codes_`; kNoRow: filling
   std::vector<std::int8_t> tails_;       // by row

@@ -11,7 +11,8 @@ namespace landmarkdb {
 
 // The descriptors of one entry and their codes (make_codes.hpp).
 struct CodedPart {
-  std::span<const float> values;           // N x kShotLength, unit length; must outlive the index
+  // N x kShotLength, unit length; must outlive the index. Empty: the codes alone are at hand.
+  std::span<const float> values;
   const DescriptorCodes* codes = nullptr;  // copied
 };
 
@@ -28,7 +29,9 @@ struct CodedSearchOptions {
   double compared_a_neighbour = 2.0;
 };
 
-// Ranks by l2 distance. Finds most of the true neighbours; what it returns was compared in full.
+// Ranks by l2 distance. Finds most of the true neighbours; what it returns was compared in full. In
+// an index with parts of which only the codes are at hand nothing is: there the distance is that of
+// code and tail, a little less than the true one, and no descriptors need to be kept.
 // Rows count on through the parts in their order. The same bytes on every machine. Takes 136 bytes
 // a row beside the parts. Throws Error{kInvalidArgument} for codes that do not fit their values.
 std::unique_ptr<DescriptorIndex> make_coded_index(std::span<const CodedPart> parts,

@@ -165,6 +165,21 @@ DescriptorCodes make_codes(std::span<const float> values, const RunContext& cont
   return sort_out(row_codes, centres, list_of);
 }
 
+float dissimilarity_of_codes(std::int32_t squared_distance) {
+  // One step of a code in units of the descriptors' own: sums are over rows in kRowSteps and
+  // components of one length, the first's.
+  static const float step = [] {
+    const CodeBasis& basis = code_basis();
+    float squared_length = 0.0F;
+    for (std::size_t j = 0; j < kShotLength; ++j) {
+      const auto element = static_cast<float>(basis.components[j]);
+      squared_length += element * element;
+    }
+    return basis.step / (kRowSteps * std::sqrt(squared_length));
+  }();
+  return step * std::sqrt(0.5F * static_cast<float>(squared_distance));
+}
+
 std::string fault_of_codes(const DescriptorCodes& codes, std::size_t rows) {
   const std::size_t lists = codes.lists();
   if (codes.rows.size() != rows || codes.codes.size() != rows * kCodeLength ||

@@ -25,6 +25,10 @@ RowCodes code_rows(std::span<const float> values, const RunContext& context);
 // for any `context.threads`. Throws like code_rows. Cost: N^2 / 64 comparisons of codes a round.
 DescriptorCodes make_codes(std::span<const float> values, const RunContext& context);
 
+// The dissimilarity in terms of Measure::kL2 for the squared distance of two codes with their
+// tails.
+float dissimilarity_of_codes(std::int32_t squared_distance);
+
 // What is wrong with codes for `rows` descriptors: they come from a file. Empty: nothing.
 std::string fault_of_codes(const DescriptorCodes& codes, std::size_t rows);
 

@@ -65,6 +65,29 @@ SurfaceGrid make_wide_grid(const PreparedCloud& cloud) {
   return SurfaceGrid(points, normals, cell_m, kReachCells);
 }
 
+Entry make_outline(CatalogEntry stored) {
+  const PreparedCloud& cloud = stored.record->prepared;
+  const double cell_m = cloud.resolution_m;
+  SurfaceGrid wide = cloud.size() > 0 ? make_wide_grid(cloud) : SurfaceGrid({}, {}, cell_m, 0);
+  if (cloud.size() > 0) {
+    auto slim = std::make_shared<SceneRecord>(*stored.record);
+    slim->prepared.points = {};
+    slim->prepared.normals = {};
+    slim->prepared.viewpoint_index = {};
+    slim->descriptors.normals = {};
+    stored.record = std::move(slim);
+  }
+  return {.stored = std::move(stored),
+          .grid = SurfaceGrid({}, {}, cell_m, 0),
+          .wide = std::move(wide),
+          .wide_sight = {},
+          .planes = {},
+          .test = {},
+          .sight = {},
+          .centre = Eigen::Vector3d::Zero(),
+          .extent_m = 0.0};
+}
+
 std::vector<std::uint32_t> spread(std::size_t size, std::size_t count) {
   const std::size_t taken = std::min(size, count);
   std::vector<std::uint32_t> indices(taken);

@@ -49,6 +49,10 @@ SurfaceGrid make_wide_grid(const PreparedCloud& cloud);
 // Throws what make_grid does, naming the scene, and what `context.check` does.
 Entry make_entry(CatalogEntry stored, const RunContext& context = {});
 
+// An entry of which no fine surface is in memory: its grid has the cells it will have, its record
+// keypoints and frames. The wide grid is there if the record given has points.
+Entry make_outline(CatalogEntry stored);
+
 // Every n-th point, so that about `count` are left; points of a thinned cloud lie evenly on the
 // surface.
 std::vector<std::uint32_t> spread(std::size_t size, std::size_t count);

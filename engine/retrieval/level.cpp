@@ -1,33 +1,133 @@
 #include "engine/retrieval/level.hpp"
 
 #include <algorithm>
+#include <optional>
+
+#include "engine/base/error.hpp"
+#include "engine/base/parallel.hpp"
+#include "engine/matching/code_bytes.hpp"
+#include "engine/matching/coded_index.hpp"
+#include "engine/matching/make_codes.hpp"
 
 namespace landmarkdb {
+
+namespace {
+
+// The entry's descriptors: `held` keeps them where they had to be read. Empty for a damaged one.
+std::span<const float> values_of(const Entry& entry,
+                                 const RunContext& context,
+                                 std::shared_ptr<const SceneRecord>& held) {
+  const std::vector<float>& values = entry.record().descriptors.values;
+  if (!values.empty() || entry.stored.source == nullptr) return values;
+  try {
+    held = entry.stored.source->load(SceneParts::kWhole, context);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kDataLoss && error.code() != ErrorCode::kUnimplemented) throw;
+    return {};
+  }
+  return held->descriptors.values;
+}
+
+// Rows whose code is zero: as near to one query as to another.
+DescriptorCodes blank_codes(std::size_t rows) {
+  DescriptorCodes codes;
+  if (rows == 0) return codes;
+  codes.centres.assign(kCodeLength, 0);
+  codes.list_start = {0, static_cast<std::uint32_t>(rows)};
+  for (std::size_t row = 0; row < rows; ++row)
+    codes.rows.push_back(static_cast<std::uint32_t>(row));
+  codes.codes.assign(rows * kCodeLength, 0);
+  codes.tails.assign(rows * kCodeLength, 0);
+  return codes;
+}
+
+DescriptorCodes codes_of(const Entry& entry, const RunContext& context) {
+  const std::size_t rows = rows_of(entry);
+  if (entry.stored.source != nullptr) {
+    const std::optional<SceneIndexBlob> stored = entry.stored.source->index(context);
+    std::optional<DescriptorCodes> codes = stored ? codes_from(*stored, rows) : std::nullopt;
+    if (codes) return *std::move(codes);
+  }
+  std::shared_ptr<const SceneRecord> held;
+  const std::span<const float> values = values_of(entry, context, held);
+  return values.size() == rows * kShotLength ? make_codes(values, context) : blank_codes(rows);
+}
+
+// Side by side, each by one thread, and a few at a time, so that progress is told between them.
+std::vector<DescriptorCodes> all_codes(const Entries& entries,
+                                       std::span<const std::size_t> chosen,
+                                       const RunContext& context) {
+  constexpr std::size_t kAtATime = 64;
+  RunContext alone = context;
+  alone.threads = 1;
+  alone.progress = nullptr;
+  std::vector<DescriptorCodes> codes(chosen.size());
+  for (std::size_t first = 0; first < chosen.size(); first += kAtATime) {
+    context.report("index", first, chosen.size());
+    const std::size_t count = std::min(kAtATime, chosen.size() - first);
+    parallel_chunks(count, context.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = first + begin; i < first + end; ++i) {
+        codes[i] = codes_of(entries[chosen[i]], alone);
+      }
+    });
+  }
+  return codes;
+}
+
+}  // namespace
 
 std::size_t Level::entry_of_row(std::size_t row) const {
   const auto above = std::upper_bound(first_row.begin(), first_row.end(), row);
   return static_cast<std::size_t>(above - first_row.begin()) - 1;
 }
 
-Level make_level(std::span<const Entry> entries, std::span<const std::size_t> chosen) {
-  Level level{.options = {}, .entries = {}, .first_row = {0}, .values = {}, .index = {}};
-  std::size_t numbers = 0;
+std::size_t rows_of(const Entry& entry) {
+  return entry.stored.source != nullptr ? static_cast<std::size_t>(entry.stored.keypoints)
+                                        : entry.record().descriptors.size();
+}
+
+std::vector<float> level_values(const Entries& entries,
+                                std::span<const std::size_t> chosen,
+                                const RunContext& context) {
+  std::size_t rows = 0;
+  for (const std::size_t entry : chosen) rows += rows_of(entries[entry]);
+  std::vector<float> all;
+  all.reserve(rows * kShotLength);  // gigabytes for a thousand places: grown, it would hold two
+  std::size_t want = 0;
   for (const std::size_t entry : chosen) {
-    numbers += entries[entry].record().descriptors.values.size();
+    context.check("load");
+    std::shared_ptr<const SceneRecord> held;
+    const std::span<const float> values = values_of(entries[entry], context, held);
+    all.insert(all.end(), values.begin(), values.end());
+    want += rows_of(entries[entry]) * kShotLength;
+    all.resize(want);
   }
-  level.values.reserve(numbers);  // gigabytes for a thousand places: grown, it would hold two
+  return all;
+}
+
+Level make_level(const Entries& entries,
+                 std::span<const std::size_t> chosen,
+                 const RunContext& context,
+                 std::size_t most_exact_rows) {
+  Level level{.options = {}, .entries = {}, .first_row = {0}, .index = {}, .coded = false};
   for (const std::size_t entry : chosen) {
     level.options = entries[entry].record().options;
-    const std::vector<float>& values = entries[entry].record().descriptors.values;
     level.entries.push_back(entry);
-    level.values.insert(level.values.end(), values.begin(), values.end());
-    level.first_row.push_back(level.values.size() / kShotLength);
+    level.first_row.push_back(level.first_row.back() + rows_of(entries[entry]));
   }
-  level.index = make_exact_index(level.values, Measure::kL2);
+  level.coded = level.rows() > most_exact_rows;
+  if (level.coded) {
+    const std::vector<DescriptorCodes> codes = all_codes(entries, chosen, context);
+    std::vector<CodedPart> parts;
+    for (const DescriptorCodes& one : codes) parts.push_back({{}, &one});
+    level.index = make_coded_index(parts);
+  } else {
+    level.index = make_exact_index(level_values(entries, chosen, context), Measure::kL2);
+  }
   return level;
 }
 
-std::vector<Level> make_levels(std::span<const Entry> entries, const RunContext& context) {
+std::vector<std::vector<std::size_t>> group_places(const Entries& entries) {
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (entries[i].is_object()) continue;
@@ -39,10 +139,16 @@ std::vector<Level> make_levels(std::span<const Entry> entries, const RunContext&
     if (group == groups.end()) group = groups.insert(groups.end(), std::vector<std::size_t>{});
     group->push_back(i);
   }
+  return groups;
+}
+
+std::vector<Level> make_levels(const Entries& entries,
+                               const RunContext& context,
+                               std::size_t most_exact_rows) {
   std::vector<Level> levels;
-  for (const std::vector<std::size_t>& group : groups) {
+  for (const std::vector<std::size_t>& group : group_places(entries)) {
     context.check("index");
-    levels.push_back(make_level(entries, group));
+    levels.push_back(make_level(entries, group, context, most_exact_rows));
   }
   return levels;
 }

@@ -11,7 +11,9 @@
 #include "engine/cloud/resolution.hpp"
 #include "engine/retrieval/agreement.hpp"
 #include "engine/retrieval/contrast.hpp"
+#include "engine/retrieval/entries.hpp"
 #include "engine/retrieval/entry.hpp"
+#include "engine/retrieval/entry_cache.hpp"
 #include "engine/retrieval/expected.hpp"
 #include "engine/retrieval/explain.hpp"
 #include "engine/retrieval/hypothesis.hpp"
@@ -27,7 +29,8 @@ namespace landmarkdb {
 
 struct Localizer::State {
   std::shared_ptr<const Catalog> catalog;
-  std::vector<Entry> entries;  // as in the catalogue
+  std::unique_ptr<EntryCache> entries;  // as in the catalogue
+  std::size_t on_demand = 0;            // of them
   std::vector<Level> levels;
   mutable IndexCache indexes;  // thread-safe
 };
@@ -84,13 +87,19 @@ void check_options(const QueryOptions& options) {
   }
 }
 
-std::vector<bool> wanted_entries(std::span<const Entry> entries, const QueryOptions& options) {
-  if (options.scenes.empty()) return std::vector<bool>(entries.size(), true);
-  std::vector<bool> wanted(entries.size(), false);
+std::vector<bool> wanted_entries(const Entries& entries, const QueryOptions& options) {
+  std::vector<bool> wanted(entries.size(), options.scenes.empty());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries.is_damaged(i)) wanted[i] = false;
+  }
   for (const std::string& name : options.scenes) {
     bool known = false;
     for (std::size_t i = 0; i < entries.size(); ++i) {
       if (entries[i].record().name != name) continue;
+      if (entries.is_damaged(i)) {
+        throw Error(
+            ErrorCode::kDataLoss, "scene '" + name + "' is damaged and not served", "scene");
+      }
       wanted[i] = true;
       known = true;
     }
@@ -118,7 +127,7 @@ std::string nothing_left(const SearchResult& search,
 
 void add_warnings(const CleanQuery& query,
                   const Verdict& verdict,
-                  std::span<const Entry> entries,
+                  const Entries& entries,
                   QueryResult& answer) {
   if (units_look_wrong(measure_scale(query.cloud), EntryKind::kPlace)) {
     answer.warnings.emplace_back("units_suspect");
@@ -156,39 +165,126 @@ void fill_hypotheses(const SearchInput& input,
   }
 }
 
-// Side by side, and a few at a time, so that progress is told between them.
-std::vector<Entry> make_entries(const Catalog& catalog, const RunContext& context) {
+// Side by side, and a few at a time, so that progress is told between them. `make(i)` fills in
+// which[i].
+template <typename Make>
+void for_each_entry(std::span<const std::size_t> which,
+                    const RunContext& context,
+                    const Make& make) {
   constexpr std::size_t kAtATime = 16;  // for each thread: a large place holds up few others
-  const std::size_t total = catalog.entries.size();
   const std::size_t step = kAtATime * static_cast<std::size_t>(std::max(context.threads, 1));
-  std::vector<Entry> entries;
-  entries.reserve(total);
-  for (std::size_t first = 0; first < total; first += step) {
-    context.report("index", first, total);
-    std::vector<std::optional<Entry>> made(std::min(step, total - first));
-    parallel_chunks(made.size(), context.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        made[i] = make_entry(catalog.entries[first + i], context);
-      }
+  for (std::size_t first = 0; first < which.size(); first += step) {
+    context.report("index", first, which.size());
+    const std::size_t count = std::min(step, which.size() - first);
+    parallel_chunks(count, context.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) make(which[first + i]);
     });
-    for (std::optional<Entry>& entry : made) entries.push_back(*std::move(entry));
   }
-  return entries;
+}
+
+// The entries that are kept whole: objects, and the places of levels that are searched exactly.
+std::vector<std::size_t> kept_whole(const Entries& entries, std::size_t most_exact_rows) {
+  std::vector<std::size_t> whole;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].is_object()) whole.push_back(i);
+  }
+  for (const std::vector<std::size_t>& group : group_places(entries)) {
+    std::size_t rows = 0;
+    for (const std::size_t i : group) rows += rows_of(entries[i]);
+    if (rows <= most_exact_rows) whole.insert(whole.end(), group.begin(), group.end());
+  }
+  std::sort(whole.begin(), whole.end());
+  return whole;
+}
+
+// What the cache starts from: outlines with keypoints and wide grids where no more is wanted, all
+// else whole.
+struct Base {
+  std::vector<std::shared_ptr<const Entry>> entries;
+  std::vector<std::string> damage;  // of each entry; empty where it is sound
+};
+
+Base make_base(const Catalog& catalog, std::size_t most_exact_rows, const RunContext& context) {
+  Base base;
+  base.damage.resize(catalog.entries.size());
+  std::vector<std::size_t> in_memory;
+  for (std::size_t i = 0; i < catalog.entries.size(); ++i) {
+    base.entries.push_back(std::make_shared<const Entry>(make_outline(catalog.entries[i])));
+    if (catalog.entries[i].source == nullptr) in_memory.push_back(i);
+  }
+  for_each_entry(in_memory, context, [&](std::size_t i) {
+    base.entries[i] = std::make_shared<const Entry>(make_entry(catalog.entries[i], context));
+  });
+  EntryCache outlines(base.entries, 0);
+  std::vector<bool> whole(catalog.entries.size(), false);
+  for (const std::size_t i : kept_whole(Entries(outlines), most_exact_rows)) whole[i] = true;
+  std::vector<std::size_t> to_read;
+  for (std::size_t i = 0; i < catalog.entries.size(); ++i) {
+    if (catalog.entries[i].source != nullptr) to_read.push_back(i);
+  }
+  RunContext alone = context;
+  alone.threads = 1;
+  alone.progress = nullptr;
+  for_each_entry(to_read, context, [&](std::size_t i) {
+    CatalogEntry stored = catalog.entries[i];
+    try {
+      stored.record =
+          stored.source->load(whole[i] ? SceneParts::kWhole : SceneParts::kSurface, alone);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::kDataLoss && error.code() != ErrorCode::kUnimplemented) throw;
+      base.damage[i] = error.what();
+      return;
+    }
+    if (!whole[i]) {
+      base.entries[i] = std::make_shared<const Entry>(make_outline(std::move(stored)));
+      return;
+    }
+    stored.source = nullptr;  // there is nothing left to be read
+    base.entries[i] = std::make_shared<const Entry>(make_entry(std::move(stored), context));
+  });
+  return base;
 }
 
 }  // namespace
 
-Localizer::Localizer(std::shared_ptr<const Catalog> catalog, const RunContext& context) {
+Localizer::Localizer(std::shared_ptr<const Catalog> catalog,
+                     const RunContext& context,
+                     const LocalizerOptions& options) {
   auto state = std::make_unique<State>();
   state->catalog = std::move(catalog);
-  state->entries = make_entries(*state->catalog, context);
-  state->levels = make_levels(state->entries, context);
+  const std::size_t most_exact_rows =
+      options.most_exact_rows > 0 ? options.most_exact_rows : kMostExactRows;
+  Base base = make_base(*state->catalog, most_exact_rows, context);
+  state->entries = std::make_unique<EntryCache>(
+      std::move(base.entries), options.scene_memory_bytes, options.on_damaged);
+  for (std::size_t i = 0; i < base.damage.size(); ++i) {
+    if (!base.damage[i].empty()) {
+      state->entries->set_aside(i, base.damage[i]);
+    } else if (state->entries->base(i)->stored.source != nullptr) {
+      ++state->on_demand;
+    }
+  }
+  state->levels = make_levels(Entries(*state->entries), context, most_exact_rows);
   state_ = std::move(state);
 }
 
 Localizer::~Localizer() = default;
 
 const Catalog& Localizer::catalog() const { return *state_->catalog; }
+
+std::vector<std::pair<std::size_t, std::string>> Localizer::damaged() const {
+  std::vector<std::pair<std::size_t, std::string>> damaged;
+  for (std::size_t i = 0; i < state_->entries->size(); ++i) {
+    std::string what = state_->entries->damage(i);
+    if (!what.empty()) damaged.emplace_back(i, std::move(what));
+  }
+  return damaged;
+}
+
+LoadedScenes Localizer::loaded() const {
+  const EntryCache& entries = *state_->entries;
+  return {state_->on_demand, entries.bytes(), entries.loads(), entries.let_go()};
+}
 
 QueryResult Localizer::query(const PointCloud& cloud,
                              const QueryOptions& options,
@@ -203,7 +299,8 @@ QueryResult Localizer::query(std::vector<QueryCloud> clouds,
   QueryResult answer;
   const StageTimer total(answer.timings.total);
   answer.seed = options.seed;
-  const std::vector<bool> wanted = wanted_entries(state_->entries, options);
+  Entries entries(*state_->entries);
+  const std::vector<bool> wanted = wanted_entries(entries, options);
 
   context.report("preprocess", 0, 1);
   const CleanQuery query = [&] {
@@ -225,7 +322,7 @@ QueryResult Localizer::query(std::vector<QueryCloud> clouds,
     if (options.explain) answer.explanation = explain_unsearched(answer);
     return answer;
   }
-  if (state_->entries.empty()) {
+  if (entries.empty()) {
     answer.reason = "match: the database has no scenes";
     if (options.explain) answer.explanation = explain_unsearched(answer);
     return answer;
@@ -234,7 +331,7 @@ QueryResult Localizer::query(std::vector<QueryCloud> clouds,
   ViewCache views(query, options.seed, context, answer.timings);
   const SearchInput input{query,
                           options,
-                          state_->entries,
+                          entries,
                           state_->levels,
                           wanted,
                           views,
@@ -258,7 +355,7 @@ QueryResult Localizer::query(std::vector<QueryCloud> clouds,
   }
   VerdictOptions verdict_options;
   verdict_options.min_confidence = options.min_confidence;
-  const Verdict verdict = judge(search.poses, state_->entries, query.centre, verdict_options);
+  const Verdict verdict = judge(search.poses, entries, query.centre, verdict_options);
   answer.status = verdict.status;
   if (answer.status == QueryStatus::kNotFound) {
     if (!search.poses.empty()) {
@@ -270,7 +367,7 @@ QueryResult Localizer::query(std::vector<QueryCloud> clouds,
       answer.reason = nothing_left(search, query, views);
     }
   }
-  add_warnings(query, verdict, state_->entries, answer);
+  add_warnings(query, verdict, entries, answer);
   fill_hypotheses(input, search, verdict, answer);
   if (options.explain) {
     answer.explanation = explain({input, search, dropped, verdict, verdict_options, answer});

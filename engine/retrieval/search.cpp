@@ -74,7 +74,7 @@ std::vector<Assessed> assess_all_coarse(const SearchInput& input,
 // The best poses, one of each that refinement has carried to the same spot, and only so many of
 // what the verdict takes for one place, so that its rivals are looked at as closely.
 std::vector<Assessed> best_distinct(const std::vector<Assessed>& assessed,
-                                    std::span<const Entry> entries,
+                                    const Entries& entries,
                                     const Eigen::Vector3d& centre) {
   constexpr double kSameCells = 2.0;
   constexpr double kSameRad = 0.05;
@@ -144,18 +144,23 @@ FeatureOptions query_features(FeatureOptions of_entry, const QueryOptions& optio
   return of_entry;
 }
 
-std::shared_ptr<const DescriptorIndex> index_over(const SearchInput& input,
-                                                  std::span<const float> values) {
-  const bool lasting =
-      std::any_of(input.levels.begin(),
-                  input.levels.end(),
-                  [&](const Level& level) { return level.values.data() == values.data(); }) ||
-      std::any_of(input.entries.begin(), input.entries.end(), [&](const Entry& entry) {
-        return entry.record().descriptors.values.data() == values.data();
-      });
+std::shared_ptr<const DescriptorIndex> index_over(const SearchInput& input, std::size_t entry) {
+  const std::vector<float>& values = input.entries[entry].record().descriptors.values;
+  return input.indexes.get(input.entries.key(entry),
+                           values.size() / kShotLength,
+                           input.options.measure,
+                           input.options.search,
+                           [&] { return values; });
+}
+
+std::shared_ptr<const DescriptorIndex> index_over(const SearchInput& input, const Level& level) {
+  const auto values = [&] { return level_values(input.entries, level.entries, input.context); };
+  const bool lasting = std::any_of(input.levels.begin(),
+                                   input.levels.end(),
+                                   [&](const Level& other) { return &other == &level; });
   const QueryOptions& options = input.options;
-  return lasting ? input.indexes.get(values, options.measure, options.search)
-                 : make_index(values, options.measure, options.search);
+  return lasting ? input.indexes.get(&level, level.rows(), options.measure, options.search, values)
+                 : make_index(values(), options.measure, options.search);
 }
 
 std::optional<Gravity> gravity_of(const QueryOptions& options, const SceneRecord& record) {

@@ -10,6 +10,7 @@
 #include "engine/base/run_context.hpp"
 #include "engine/registration/propose.hpp"
 #include "engine/retrieval/assess.hpp"
+#include "engine/retrieval/entries.hpp"
 #include "engine/retrieval/entry.hpp"
 #include "engine/retrieval/index_cache.hpp"
 #include "engine/retrieval/level.hpp"
@@ -55,11 +56,12 @@ class ViewCache {
 // surface.
 inline constexpr double kMostSpacingVoxels = 2.5;
 
-// What the searches share. `wanted[i]`: entry i may answer.
+// What the searches share. `wanted[i]`: entry i may answer. A search loads the entries it looks at
+// closely.
 struct SearchInput {
   const CleanQuery& query;
   const QueryOptions& options;
-  std::span<const Entry> entries;
+  Entries& entries;
   std::span<const Level> levels;
   const std::vector<bool>& wanted;
   ViewCache& views;
@@ -105,6 +107,9 @@ void search_objects(const SearchInput& input, SearchResult& result);
 // What is tested of an entry: a pose from each putative pair, and those that lay planes on planes.
 std::vector<Proposal> propose(const SearchInput& input, const EntryMatches& matches);
 
+// The first step of search_places: the places that have matches, each with its pairs.
+void match_places(const SearchInput& input, SearchResult& result);
+
 // Plane distance at which a point lies on the entry's surface: that of the finest entry asked, so
 // that entries of different resolution compete fairly, but not less than the entry can tell.
 double common_tolerance_m(const SearchInput& input, const Entry& entry);
@@ -117,10 +122,10 @@ void search_paper(const SearchInput& input, SearchResult& result);
 // named.
 FeatureOptions query_features(FeatureOptions of_entry, const QueryOptions& options);
 
-// The index the options ask for, over rows of descriptors: kept from query to query when these are
-// an entry's or a level's own.
-std::shared_ptr<const DescriptorIndex> index_over(const SearchInput& input,
-                                                  std::span<const float> values);
+// The index the options ask for, over the descriptors of this entry, or of this level: kept from
+// query to query, but for levels that were made for the query.
+std::shared_ptr<const DescriptorIndex> index_over(const SearchInput& input, std::size_t entry);
+std::shared_ptr<const DescriptorIndex> index_over(const SearchInput& input, const Level& level);
 
 // The gravity that query and entry agree to use: nullopt where one of them does not know it.
 std::optional<Gravity> gravity_of(const QueryOptions& options, const SceneRecord& record);

@@ -68,7 +68,7 @@ void search_objects(const SearchInput& input, SearchResult& result) {
   std::unordered_map<const QueryView*, std::unique_ptr<QuerySurface>> surfaces;
   for (std::size_t e = 0; e < input.entries.size(); ++e) {
     const Entry& entry = input.entries[e];
-    if (!entry.is_object() || !input.wanted[e]) continue;
+    if (!entry.is_object() || !input.wanted[e] || input.entries.is_damaged(e)) continue;
     input.context.check("pose");
     const QueryView& view = input.views.dense_at(entry.record().options);
     if (view.prepared.size() == 0) {

@@ -139,7 +139,7 @@ std::vector<Group> match_and_filter(const SearchInput& input, EntryMatches& matc
   std::vector<DescriptorMatch> found;
   {
     const StageTimer timer(input.timings.match);
-    index_over(input, record.descriptors.values)
+    index_over(input, matches.entry)
         ->search(matches.view->descriptors.values, kNeighbours, found, input.context);
   }
   const StageTimer timer(input.timings.filter);
@@ -226,8 +226,16 @@ void drop_agreeing(const SearchInput& input,
 
 void search_paper(const SearchInput& input, SearchResult& result) {
   std::vector<Candidate> candidates;
+  std::vector<std::size_t> asked;
   for (std::size_t e = 0; e < input.entries.size(); ++e) {
-    if (!input.wanted[e]) continue;
+    if (input.wanted[e]) asked.push_back(e);
+  }
+  {
+    const StageTimer timer(input.timings.load);
+    input.entries.load(asked, SceneParts::kWhole, input.context);
+  }
+  for (const std::size_t e : asked) {
+    if (input.entries.is_damaged(e)) continue;
     // The query is described as the entry was, keypoints and all: NARF where that has NARF.
     const QueryView& view =
         input.views.at(query_features(input.entries[e].record().options, input.options));

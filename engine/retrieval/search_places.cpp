@@ -5,6 +5,7 @@
 #include "engine/base/error.hpp"
 #include "engine/registration/propose.hpp"
 #include "engine/registration/propose_from_planes.hpp"
+#include "engine/retrieval/narrow_places.hpp"
 #include "engine/retrieval/rank_poses.hpp"
 #include "engine/retrieval/search.hpp"
 
@@ -50,10 +51,10 @@ void match_level(const SearchInput& input,
   const StageTimer timer(input.timings.match);
   const std::size_t k = neighbours_for(level.entries.size(), view.descriptors.size());
   std::vector<DescriptorMatch> found;
-  // The level's own index is exact and Euclidean; another is made when it is asked for.
+  // The level's own index is Euclidean; another is made when it is asked for.
   std::shared_ptr<const DescriptorIndex> other;
   if (input.options.measure != Measure::kL2 || input.options.search != Search::kExact) {
-    other = index_over(input, level.values);
+    other = index_over(input, level);
   }
   (other ? *other : *level.index).search(view.descriptors.values, k, found, input.context);
   std::vector<EntryMatches> by_entry(level.entries.size());
@@ -70,7 +71,7 @@ void match_level(const SearchInput& input,
          found[i].distance});
   }
   for (EntryMatches& matches : by_entry) {
-    if (matches.putative.empty()) continue;
+    if (matches.putative.empty() || !input.wanted[matches.entry]) continue;
     matches.counts.putative = static_cast<std::uint32_t>(matches.putative.size());
     result.matches.push_back(std::move(matches));
   }
@@ -79,14 +80,33 @@ void match_level(const SearchInput& input,
 // Planes propose as many poses of a place as all its pairs do: they are tried in those places that
 // most of the query's keypoints have neighbours in.
 void choose_for_planes(std::vector<EntryMatches>& matches) {
-  constexpr std::size_t kMostPlaces = 4;
+  constexpr std::size_t kMostLaid = 4;
   std::vector<EntryMatches*> order;
   for (EntryMatches& one : matches) order.push_back(&one);
   std::stable_sort(order.begin(), order.end(), [](const EntryMatches* a, const EntryMatches* b) {
     return a->putative.size() > b->putative.size();
   });
-  order.resize(std::min(order.size(), kMostPlaces));
+  order.resize(std::min(order.size(), kMostLaid));
   for (EntryMatches* one : order) one->by_planes = true;
+}
+
+// Leaves the places that are worth a closer look, and brings these into memory.
+void narrow(const SearchInput& input, SearchResult& result) {
+  std::vector<EntryMatches>& matches = result.matches;
+  if (matches.size() > kAllPlaces) {
+    const StageTimer timer(input.timings.pose);
+    std::vector<EntryMatches> kept;
+    for (const std::size_t m : best_places(place_scores(input, matches), kMostPlaces)) {
+      kept.push_back(std::move(matches[m]));
+    }
+    matches = std::move(kept);
+  }
+  const StageTimer timer(input.timings.load);
+  std::vector<std::size_t> which;
+  for (const EntryMatches& one : matches) which.push_back(one.entry);
+  input.entries.load(which, SceneParts::kSurface, input.context);
+  std::erase_if(matches,
+                [&](const EntryMatches& one) { return input.entries.is_damaged(one.entry); });
 }
 
 void propose_and_rank(const SearchInput& input,
@@ -145,8 +165,7 @@ double common_tolerance_m(const SearchInput& input, const Entry& entry) {
   return std::max(kCells * finest_m, kLeastCells * entry.grid.cell_m());
 }
 
-void search_places(const SearchInput& input, SearchResult& result) {
-  std::vector<Candidate> candidates;
+void match_places(const SearchInput& input, SearchResult& result) {
   for (const Level& level : input.levels) {
     std::vector<std::size_t> asked;
     std::copy_if(level.entries.begin(),
@@ -154,6 +173,7 @@ void search_places(const SearchInput& input, SearchResult& result) {
                  std::back_inserter(asked),
                  [&](std::size_t entry) { return input.wanted[entry]; });
     if (asked.empty()) continue;
+    const bool named = !input.options.scenes.empty() && asked.size() < level.entries.size();
     if (input.query.spacing_m > kMostSpacingVoxels * level.options.voxel_m) {
       result.lost_at = "density";
       result.coarsest_voxel_m = std::max(result.coarsest_voxel_m, level.options.voxel_m);
@@ -161,12 +181,18 @@ void search_places(const SearchInput& input, SearchResult& result) {
     }
     const QueryView& view = input.views.at(query_features(level.options, input.options));
     if (view.prepared.size() < kFewestVoxels || view.descriptors.size() == 0) continue;
-    if (asked.size() == level.entries.size()) {
-      match_level(input, level, view, result);
+    if (named) {
+      match_level(input, make_level(input.entries, asked, input.context), view, result);
     } else {
-      match_level(input, make_level(input.entries, asked), view, result);
+      match_level(input, level, view, result);
     }
   }
+}
+
+void search_places(const SearchInput& input, SearchResult& result) {
+  std::vector<Candidate> candidates;
+  match_places(input, result);
+  narrow(input, result);
   choose_for_planes(result.matches);
   const std::size_t places = std::max<std::size_t>(result.matches.size(), 1);
   const std::size_t settled_each = std::clamp(kSettled / places, kSettledAtLeast, kSettledAPlace);

@@ -23,7 +23,7 @@ bool is_closer(const Assessed& candidate, const Assessed& other) {
 
 // Keeps one of each group of like poses, sorted by score.
 std::vector<Assessed> distinct(std::vector<Assessed> assessed,
-                               std::span<const Entry> entries,
+                               const Entries& entries,
                                const Eigen::Vector3d& centre,
                                const VerdictOptions& options) {
   std::stable_sort(assessed.begin(), assessed.end(), better);
@@ -50,7 +50,7 @@ std::vector<Assessed> distinct(std::vector<Assessed> assessed,
 
 // Only one of two rivals can be right: two places, or two objects at one spot. An object stands in
 // a place, and several objects may stand in view.
-bool rivals(const Assessed& a, const Assessed& b, std::span<const Entry> entries) {
+bool rivals(const Assessed& a, const Assessed& b, const Entries& entries) {
   const Entry& entry_a = entries[a.entry];
   const Entry& entry_b = entries[b.entry];
   if (entry_a.is_object() != entry_b.is_object()) return false;
@@ -62,7 +62,7 @@ bool rivals(const Assessed& a, const Assessed& b, std::span<const Entry> entries
 
 // The best score among the rivals of poses[i]. Where none was found the search may have missed it:
 // one that does well, but not as well, is taken for granted.
-double best_rival(std::size_t i, std::span<const Assessed> poses, std::span<const Entry> entries) {
+double best_rival(std::size_t i, std::span<const Assessed> poses, const Entries& entries) {
   constexpr double kUnseenRival = 0.6;  // of the pose's own score
   double best = kUnseenRival * poses[i].score;
   for (std::size_t j = 0; j < poses.size(); ++j) {
@@ -73,9 +73,7 @@ double best_rival(std::size_t i, std::span<const Assessed> poses, std::span<cons
 
 // The least contrast to any rival. Where the two were not compared point by point, the scores say
 // it: a lead of kFullLead is full contrast.
-double least_contrast(std::size_t i,
-                      std::span<const Assessed> poses,
-                      std::span<const Entry> entries) {
+double least_contrast(std::size_t i, std::span<const Assessed> poses, const Entries& entries) {
   constexpr double kFullLead = 0.4;
   double least = 1.0;
   for (std::size_t j = 0; j < poses.size(); ++j) {
@@ -95,9 +93,7 @@ struct Standing {
   double rival_score = 0.0;
 };
 
-Standing judge_among(std::size_t i,
-                     std::span<const Assessed> poses,
-                     std::span<const Entry> entries) {
+Standing judge_among(std::size_t i, std::span<const Assessed> poses, const Entries& entries) {
   Standing standing{.judged = {.pose = poses[i], .confidence = 0.0, .margin = 0.0},
                     .rival_score = best_rival(i, poses, entries)};
   Judged& judged = standing.judged;
@@ -134,7 +130,7 @@ bool is_taken(const Standing& best, const VerdictOptions& options) {
 
 // The best of the poses, and those that do not come close to it.
 std::vector<Assessed> without_close(std::span<const Assessed> poses,
-                                    std::span<const Entry> entries,
+                                    const Entries& entries,
                                     const VerdictOptions& options) {
   std::vector<Assessed> kept{poses[0]};
   for (std::size_t j = 1; j < poses.size(); ++j) {
@@ -184,7 +180,7 @@ double place_radius_m(const Entry& entry, const VerdictOptions& options) {
 }
 
 Verdict judge(std::vector<Assessed> assessed,
-              std::span<const Entry> entries,
+              const Entries& entries,
               const Eigen::Vector3d& centre,
               const VerdictOptions& options) {
   Verdict verdict;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/retrieval/assess.hpp"
+#include "engine/retrieval/entries.hpp"
 #include "engine/types/query.hpp"
 
 namespace landmarkdb {
@@ -55,7 +56,7 @@ double place_radius_m(const Entry& entry, const VerdictOptions& options);
 // Judges the assessed poses of all entries against one another. `entries` says what each pose's
 // `entry` is; `centre` (sensor frame) is where two poses are compared.
 Verdict judge(std::vector<Assessed> assessed,
-              std::span<const Entry> entries,
+              const Entries& entries,
               const Eigen::Vector3d& centre,
               const VerdictOptions& options);
 

@@ -11,6 +11,7 @@
 
 #include "engine/types/features.hpp"
 #include "engine/types/point_cloud.hpp"
+#include "engine/types/scene_source.hpp"
 
 namespace landmarkdb {
 
@@ -46,8 +47,11 @@ struct CatalogEntry {
   std::int64_t version = 0;  // 1, 2, ... per scene
   std::map<std::string, std::string> tags;
   std::vector<Landmark> landmarks;
+  // Where there is a `source`, an outline: no points, no keypoints, but all else.
   std::shared_ptr<const SceneRecord> record;
   std::string sha256{};  // of what the store holds of `record`; empty where it is not from a store
+  std::uint64_t points = 0, keypoints = 0;      // of the whole record, where it is from a store
+  std::shared_ptr<const SceneSource> source{};  // reads what the outline lacks; null: all is there
 };
 
 // All active entries at one moment. Never changes once built; shared between queries.

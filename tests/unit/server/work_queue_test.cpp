@@ -34,6 +34,53 @@ TEST(WorkQueue, TurnsWorkAwayWhenItsLineIsFull) {
   EXPECT_EQ(queue.waiting(), 0U);
 }
 
+// Holds the only thread until it is opened.
+class Gate {
+ public:
+  explicit Gate(WorkQueue& queue) {
+    EXPECT_TRUE(queue.post(99, [this] {
+      running_.set_value();
+      open_.get_future().wait();
+    }));
+    running_.get_future().wait();
+  }
+  void open() { open_.set_value(); }
+
+ private:
+  std::promise<void> running_, open_;
+};
+
+// One owner's hundred held up another's single request for as long as all of them took.
+TEST(WorkQueue, OwnersTakeTurnsEachInItsOwnOrder) {
+  WorkQueue queue(1, 20);
+  Gate gate(queue);
+  std::string order;
+  for (const char* name : {"a", "b", "c", "d"}) queue.post(1, [&order, name] { order += name; });
+  for (const char* name : {"1", "2"}) queue.post(2, [&order, name] { order += name; });
+  queue.post(3, [&order] { order += "x"; });
+  gate.open();
+  queue.join();
+  EXPECT_EQ(order, "a1xb2cd");
+}
+
+TEST(WorkQueue, AFullLineMakesRoomForWhoHasLessInIt) {
+  WorkQueue queue(1, 3);
+  Gate gate(queue);
+  std::string order, given_up;
+  for (const char* name : {"a", "b", "c"}) {
+    EXPECT_TRUE(queue.post(
+        1, [&order, name] { order += name; }, [&given_up, name] { given_up += name; }));
+  }
+  EXPECT_FALSE(queue.post(1, [&order] { order += "d"; }));
+  EXPECT_TRUE(queue.post(2, [&order] { order += "x"; }));
+  EXPECT_EQ(given_up, "c");
+  EXPECT_FALSE(queue.post(2, [&order] { order += "y"; })) << "it has as many as the other but one";
+  EXPECT_EQ(queue.waiting(), 3U);
+  gate.open();
+  queue.join();
+  EXPECT_EQ(order, "axb");
+}
+
 // An exception on a pool's thread would end the whole process.
 TEST(WorkQueue, GoesOnAfterWorkThatThrows) {
   std::vector<std::string> failures;

@@ -232,7 +232,7 @@ TEST(OpenDatabase, OfTwoThatMakeItAtOnceBothGetIt) {
 
 TEST(OpenDatabase, AWriterOfAnotherSizeLimitIsStopped) {
   const TempFolder folder;
-  Store store = Store::create_or_open(folder.file("x.db"), {.max_bytes = 400'000});
+  Store store = Store::create_or_open(folder.file("x.db"), {.max_bytes = 500'000});
   const auto thrown = error_of(
       [&] { store.insert(make_record("big", 1, {.points = 50'000, .keypoints = 100}), {}); });
   EXPECT_EQ(thrown.code, ErrorCode::kResourceExhausted);

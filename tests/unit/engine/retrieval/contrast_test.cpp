@@ -14,6 +14,7 @@ using testing::Surface;
 // A corner room and a copy of it with another box, both in the catalogue; the query is the room.
 struct Compared {
   std::vector<Entry> entries;
+  Entries view_of_entries;
   CleanQuery query;
   QueryView view;
   SearchResult result;
@@ -24,7 +25,8 @@ struct Compared {
   IndexCache indexes;
   std::vector<Level> levels;
   std::vector<bool> wanted{true, true};
-  SearchInput input{query, options, entries, levels, wanted, views, indexes, timings, context};
+  SearchInput input{
+      query, options, view_of_entries, levels, wanted, views, indexes, timings, context};
 
   explicit Compared(EntryKind kind = EntryKind::kPlace) : query(clean_query(room(false))) {
     for (const bool other_box : {false, true}) {
@@ -39,7 +41,7 @@ struct Compared {
       stored.record = std::move(record);
       entries.push_back(make_entry(std::move(stored)));
     }
-    input.entries = entries;
+    view_of_entries = Entries(entries);
     const Surface seen = surface_of(false, 2);
     view.sample_points = seen.points;
     view.sample_normals = seen.normals;

@@ -36,18 +36,20 @@ std::vector<Entry> mixed() {
 }
 
 TEST(MakeLevels, GroupsPlacesByHowTheyAreDescribedAndLeavesObjectsOut) {
-  const std::vector<Level> levels = make_levels(mixed());
+  const std::vector<Entry> entries = mixed();
+  const std::vector<Level> levels = make_levels(entries);
   ASSERT_EQ(levels.size(), 2U);
   EXPECT_EQ(levels[0].options.voxel_m, 0.05);
   EXPECT_EQ(levels[0].entries, (std::vector<std::size_t>{0, 3, 4}));
   EXPECT_EQ(levels[0].first_row, (std::vector<std::size_t>{0, 2, 2, 5}));
   EXPECT_EQ(levels[1].entries, (std::vector<std::size_t>{2}));
-  EXPECT_EQ(levels[1].values.size(), 3 * kShotLength);
-  EXPECT_TRUE(make_levels({}).empty());
+  EXPECT_EQ(levels[1].index->size(), 3U);
+  EXPECT_TRUE(make_levels(Entries()).empty());
 }
 
 TEST(MakeLevels, KnowsWhoseEachRowIsAlsoBesideAnEntryWithoutRows) {
-  const std::vector<Level> levels = make_levels(mixed());
+  const std::vector<Entry> entries = mixed();
+  const std::vector<Level> levels = make_levels(entries);
   const std::vector<std::size_t> owners{0, 0, 2, 2, 2};
   for (std::size_t row = 0; row < owners.size(); ++row) {
     EXPECT_EQ(levels[0].entry_of_row(row), owners[row]) << row;
@@ -60,8 +62,29 @@ TEST(MakeLevel, HoldsTheChosenEntriesAlone) {
   EXPECT_EQ(level.options.voxel_m, 0.05);
   EXPECT_EQ(level.entries, (std::vector<std::size_t>{0, 4}));
   EXPECT_EQ(level.first_row, (std::vector<std::size_t>{0, 2, 5}));
-  EXPECT_EQ(level.values.size(), 5 * kShotLength);
+  EXPECT_EQ(level.index->size(), 5U);
   EXPECT_EQ(level.entry_of_row(2), 1U);
+}
+
+TEST(MakeLevel, SearchesManyRowsByCodesAndFindsTheSame) {
+  const std::vector<Entry> entries = mixed();
+  const std::vector<std::size_t> chosen{0, 4};
+  const Level exact = make_level(entries, chosen, {}, 5);
+  const Level coded = make_level(entries, chosen, {}, 4);
+  EXPECT_FALSE(exact.coded);
+  ASSERT_TRUE(coded.coded);
+  EXPECT_EQ(coded.first_row, exact.first_row);
+  for (const Level* level : {&exact, &coded}) {
+    std::vector<DescriptorMatch> found;
+    level->index->search(entries[4].record().descriptors.values, 1, found, {});
+    ASSERT_EQ(found.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(found[i].distance, 0.0F, 1e-3F) << level->coded;
+      if (!level->coded) {
+        EXPECT_EQ(found[i].index, 2 + i);
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/run_context.hpp"
+
+namespace landmarkdb {
+
+struct SceneRecord;
+
+// Codes of a scene's descriptors (engine/matching/code_bytes.hpp), derived from them: may be
+// deleted, and are then made anew.
+struct SceneIndexBlob {
+  std::int64_t version = 0;  // of the layout
+  std::string params{};      // what they were made with, free text
+  std::vector<std::byte> codes{};
+
+  bool is_made_like(const SceneIndexBlob& other) const {
+    return version == other.version && params == other.params;
+  }
+};
+
+// How much of a scene is wanted in memory, each more than the one before.
+enum class SceneParts {
+  kKeypoints,  // keypoints with their frames
+  kSurface,    // points too, and the keypoints' normals
+  kWhole,      // descriptor values too
+};
+
+// Where a scene that is not in memory is read from. Thread-safe.
+class SceneSource {
+ public:
+  virtual ~SceneSource() = default;
+
+  // Reads and verifies the very version that the catalogue names. Throws Error{kDataLoss} for one
+  // that is damaged or not there any more, Error{kUnavailable} where the file cannot be read now.
+  virtual std::shared_ptr<const SceneRecord> load(SceneParts parts,
+                                                  const RunContext& context) const = 0;
+  // The codes that are stored with it, their digest checked; nothing where there are none that are
+  // sound.
+  virtual std::optional<SceneIndexBlob> index(const RunContext& context) const = 0;
+};
+
+}  // namespace landmarkdb

@@ -1,0 +1,91 @@
+#include "engine/retrieval/entries.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/engine/retrieval/rooms.hpp"
+#include "tests/unit/engine/retrieval/scene_shelf.hpp"
+
+namespace landmarkdb {
+namespace {
+
+// The same catalogue, each scene read from a shelf.
+std::shared_ptr<const Catalog> shelved(const Catalog& catalog,
+                                       std::vector<std::shared_ptr<testing::SceneShelf>>& shelves) {
+  auto copy = std::make_shared<Catalog>(catalog);
+  for (CatalogEntry& entry : copy->entries) shelves.push_back(testing::put_on_shelf(entry));
+  return copy;
+}
+
+class OnDemand : public ::testing::Test {
+ protected:
+  OnDemand() {
+    auto catalog = std::make_shared<Catalog>();
+    for (const std::uint64_t seed : {2U, 3U}) {
+      CatalogEntry entry;
+      entry.scene_id = static_cast<std::int64_t>(seed);
+      entry.record = std::make_shared<const SceneRecord>(
+          testing::describe_room("room " + std::to_string(seed), testing::small_room(seed)));
+      catalog->entries.push_back(std::move(entry));
+    }
+    in_memory = catalog;
+    on_shelves = shelved(*catalog, shelves);
+  }
+  QueryResult ask(const Localizer& localizer) const {
+    return localizer.query(testing::frame_in(testing::small_room(2), 1).cloud, {}, {});
+  }
+
+  std::vector<std::shared_ptr<testing::SceneShelf>> shelves;
+  std::shared_ptr<const Catalog> in_memory, on_shelves;
+};
+
+TEST_F(OnDemand, AnswersAsIfAllWereInMemoryWhateverIsKept) {
+  const QueryResult want = ask(Localizer(in_memory, {}, {.most_exact_rows = 1}));
+  ASSERT_FALSE(want.hypotheses.empty());
+  for (const std::size_t bytes : {std::size_t{0}, std::size_t{1} << 30U}) {
+    const Localizer localizer(on_shelves, {}, {.scene_memory_bytes = bytes, .most_exact_rows = 1});
+    EXPECT_EQ(localizer.loaded().scenes, 2U);
+    for (int turn = 0; turn < 2; ++turn) {
+      const QueryResult got = ask(localizer);
+      ASSERT_EQ(got.hypotheses.size(), want.hypotheses.size());
+      EXPECT_EQ(got.status, want.status);
+      EXPECT_EQ(got.hypotheses[0].T_scene_sensor, want.hypotheses[0].T_scene_sensor);
+      EXPECT_EQ(got.hypotheses[0].confidence, want.hypotheses[0].confidence);
+    }
+    EXPECT_EQ(localizer.loaded().bytes > 0, bytes > 0);
+  }
+}
+
+TEST_F(OnDemand, ASceneThatTurnsOutDamagedHarmsNoOther) {
+  const Localizer localizer(on_shelves, {}, {.most_exact_rows = 1});
+  shelves[1]->damaged = true;
+  const QueryResult got = ask(localizer);
+  ASSERT_FALSE(got.hypotheses.empty());
+  EXPECT_EQ(got.hypotheses[0].scene, "room 2");
+  ASSERT_EQ(localizer.damaged().size(), 1U);
+  EXPECT_EQ(localizer.damaged()[0].first, 1U);
+  QueryOptions options;
+  options.scenes = {"room 3"};
+  try {
+    localizer.query(testing::frame_in(testing::small_room(2), 1).cloud, options, {});
+    ADD_FAILURE() << "no Error was thrown";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kDataLoss);
+  }
+}
+
+TEST_F(OnDemand, ThePaperSearchesWhatIsNotInMemory) {
+  QueryOptions options;
+  options.profile = Profile::kPaper;
+  const PointCloud cloud = testing::frame_in(testing::small_room(2), 1).cloud;
+  const QueryResult want = Localizer(in_memory, {}).query(cloud, options, {});
+  const QueryResult got =
+      Localizer(on_shelves, {}, {.most_exact_rows = 1}).query(cloud, options, {});
+  EXPECT_EQ(got.status, want.status);
+  ASSERT_EQ(got.hypotheses.size(), want.hypotheses.size());
+  for (std::size_t i = 0; i < got.hypotheses.size(); ++i) {
+    EXPECT_EQ(got.hypotheses[i].T_scene_sensor, want.hypotheses[i].T_scene_sensor);
+  }
+}
+
+}  // namespace
+}  // namespace landmarkdb
