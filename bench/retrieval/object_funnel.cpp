@@ -66,8 +66,8 @@ std::string object_funnel_text(const ObjectCatalog& objects,
   const std::vector<bool> wanted(entries.size(), true);
   IndexCache indexes;
   const std::vector<Level> levels;
-  const SearchInput input{
-      query, options, entries, levels, wanted, views, indexes, timings, context};
+  Entries seen(entries);
+  const SearchInput input{query, options, seen, levels, wanted, views, indexes, timings, context};
   SearchResult result;
   search_objects(input, result);
   std::stable_sort(result.poses.begin(),

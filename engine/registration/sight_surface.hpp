@@ -29,6 +29,10 @@ class SightSurface {
   std::span<const Eigen::Vector3f> points() const { return points_; }  // block after block
   std::span<const Eigen::Vector3f> normals() const { return normals_; }
   std::span<const Block> blocks() const { return blocks_; }
+  std::size_t memory_bytes() const {
+    return (points_.size() + normals_.size()) * sizeof(Eigen::Vector3f) +
+           blocks_.size() * sizeof(Block);
+  }
 
  private:
   std::vector<Eigen::Vector3f> points_;

@@ -143,7 +143,7 @@ std::vector<Assessed> without_close(std::span<const Assessed> poses,
 
 // Objects that stand apart do not compete, and a wrong pose of one may score above a right one of
 // another: what one can be surest of comes first. Poses of places stay as they are.
-void put_surest_object_first(std::vector<Assessed>& poses, std::span<const Entry> entries) {
+void put_surest_object_first(std::vector<Assessed>& poses, const Entries& entries) {
   const auto of_object = [&](const Assessed& pose) { return entries[pose.entry].is_object(); };
   if (!std::all_of(poses.begin(), poses.end(), of_object)) return;
   std::vector<std::pair<double, std::size_t>> order;
