@@ -116,16 +116,18 @@ bool is_rivalled(const Standing& best, const VerdictOptions& options) {
   if (evidence.observability < options.least_observability) return true;
   const double share = best.rival_score / best.judged.pose.score;
   if (share >= options.rival_share) return true;
+  if (is_sure(best, options)) return false;
+  if (!evidence.of_object) return evidence.observability < options.least_observability_unsure;
   const double least =
       share >= options.reach_share ? options.least_contrast_in_reach : options.least_contrast;
-  return !is_sure(best, options) && evidence.contrast < least;
+  return evidence.contrast < least;
 }
 
 bool is_taken(const Standing& best, const VerdictOptions& options) {
   if (is_rivalled(best, options) || best.judged.confidence < options.min_confidence) return false;
   const Assessed& pose = best.judged.pose;
-  return is_sure(best, options) ||
-         confidence_alone(pose.evidence, pose.score) >= options.least_alone;
+  const double least = pose.evidence.of_object ? options.least_alone : options.least_alone_of_place;
+  return is_sure(best, options) || confidence_alone(pose.evidence, pose.score) >= least;
 }
 
 // The best of the poses, and those that do not come close to it.

@@ -28,21 +28,25 @@ struct VerdictOptions {
   double min_confidence = 0.5;
   // A rival whose score reaches this share of the best one's explains the query about as well.
   double rival_share = 0.9;
-  // From this confidence on the rest is not asked, being in it: the contrast, and whether the pose
-  // is believable alone.
-  double sure_confidence = 0.7;
-  // A rival against which hardly more of the points that tell the two apart speak for the best is
-  // one too, and one in reach (of this share) against which less than two thirds do
-  // (0.3 = 0.65 - 0.35).
+  // From this confidence on the rest is not asked, being in it.
+  double sure_confidence = 0.8;
+  // Of a place, below that confidence: what fixes one freedom this weakly holds at look-alikes too.
+  double least_observability_unsure = 0.025;
+  // Of an object, below that confidence. A rival against which hardly more of the points that tell
+  // the two apart speak for the best is one too, and one in reach (of this share) against which
+  // less than two thirds do (0.3 = 0.65 - 0.35).
   double least_contrast = 0.1;
   double reach_share = 0.65;
   double least_contrast_in_reach = 0.3;
   // Below this the surface leaves a freedom open (a slide along a wall, a turn of a bottle), and
   // any pose along it is a rival.
   double least_observability = 0.01;
-  // A pose that is not this believable by its own evidence answers nothing, however far the others
-  // are behind. The threshold of the log-odds -1: 1 / (1 + e).
+  // An object's pose, below that confidence, that is not this believable by its own evidence
+  // answers nothing, however far the others are behind. The threshold of the log-odds -1: 1 / (1 +
+  // e).
   double least_alone = 0.27;
+  // The same of a place's: -3. What explains less than half of the view is no answer.
+  double least_alone_of_place = 0.05;
   // Two poses are different places when they are further apart than these (in cells: 0.5 m in a
   // room described at 5 cm, and no more than that in coarser ones), or in different entries.
   double different_translation_cells = 10.0;

@@ -52,6 +52,7 @@ Assessed poor(std::size_t entry, const Eigen::Vector3d& t, double score) {
   pose.evidence.overlap = 0.3;
   pose.evidence.explained = 0.4;
   pose.evidence.crossed = 0.5;
+  pose.evidence.contradicted = 0.4;
   pose.evidence.observability = 0.0;
   return pose;
 }
@@ -90,7 +91,7 @@ std::vector<Assessed> compared(Assessed best, Assessed rival, float contrast) {
   return {best, rival};
 }
 
-TEST(Judge, TakesASurePoseWhateverTheContrastButNoneThatSlidesOrHasAnEqual) {
+TEST(Judge, TakesAPoseThatIsFixedWellOrSureButNoneThatSlidesOrHasAnEqual) {
   Assessed best = good(0, kZero, 0.8);
   best.evidence.agreeing = 300.0;
   Assessed rival = good(0, {5, 0, 0}, 0.71);  // 89 % of the best one's score
@@ -102,7 +103,10 @@ TEST(Judge, TakesASurePoseWhateverTheContrastButNoneThatSlidesOrHasAnEqual) {
   EXPECT_EQ(sure.status, QueryStatus::kLocalized);
   const Verdict unsure = told(-0.3F);
   EXPECT_LT(unsure.judged[0].confidence, VerdictOptions{}.sure_confidence);
-  EXPECT_EQ(unsure.status, QueryStatus::kAmbiguous);
+  EXPECT_EQ(unsure.status, QueryStatus::kLocalized);
+  best.evidence.observability = 0.02;  // one freedom is fixed weakly
+  EXPECT_NE(told(-0.3F).status, QueryStatus::kLocalized);
+  best.evidence.observability = 0.1;
   rival.score = 0.73;  // 91 %
   EXPECT_GE(told(0.9F).judged[0].confidence, VerdictOptions{}.sure_confidence);
   EXPECT_EQ(told(0.9F).status, QueryStatus::kAmbiguous);
