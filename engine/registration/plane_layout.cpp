@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -143,17 +142,27 @@ std::vector<Across> directions_across(const Vectors& normals,
   return found;
 }
 
+// Between which all but stray points lie along the direction, and a few bins more.
+std::pair<float, float> bounds_along(std::span<const Eigen::Vector3f> points,
+                                     const Eigen::Vector3f& direction,
+                                     float bin_m) {
+  constexpr std::size_t kSampled = 20'000;
+  constexpr double kStray = 0.002;  // of the points at each end
+  constexpr float kBinsMore = 5.0F;
+  std::vector<float> places;
+  const std::size_t step = points.size() / kSampled + 1;
+  for (std::size_t i = 0; i < points.size(); i += step) places.push_back(points[i].dot(direction));
+  std::sort(places.begin(), places.end());
+  const auto cut = static_cast<std::size_t>(kStray * static_cast<double>(places.size()));
+  return {places[cut] - kBinsMore * bin_m, places[places.size() - 1 - cut] + kBinsMore * bin_m};
+}
+
 void count_offsets(std::span<const Eigen::Vector3f> points,
                    std::span<const Eigen::Vector3f> normals,
                    PlaneLayout& layout) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3f direction = layout.axes.col(static_cast<Eigen::Index>(axis));
-    float low = std::numeric_limits<float>::max();
-    float high = std::numeric_limits<float>::lowest();
-    for (const Eigen::Vector3f& p : points) {
-      low = std::min(low, p.dot(direction));
-      high = std::max(high, p.dot(direction));
-    }
+    const auto [low, high] = bounds_along(points, direction, layout.bin_m);
     PlaneLayout::Offsets& offsets = layout.offsets[axis];
     offsets.first_m = low;
     layout.low_m[axis] = low;
@@ -164,8 +173,10 @@ void count_offsets(std::span<const Eigen::Vector3f> points,
     for (std::size_t i = 0; i < points.size(); ++i) {
       const float cosine = normals[i].dot(direction);
       if (std::abs(cosine) < kSame) continue;
-      const auto bin = static_cast<std::size_t>((points[i].dot(direction) - low) / layout.bin_m);
-      if (bin < bins) offsets.count[cosine < 0.0F ? 1 : 0][bin] += 1.0F;
+      const float place = (points[i].dot(direction) - low) / layout.bin_m;
+      if (!(place >= 0.0F && place < static_cast<float>(bins))) continue;  // a stray point
+      const auto bin = static_cast<std::size_t>(place);
+      offsets.count[cosine < 0.0F ? 1 : 0][bin] += 1.0F;
     }
   }
 }

@@ -21,7 +21,7 @@ struct PlaneLayout {
   float bin_m = 0.0F;
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  // columns, a right-handed frame
   std::array<Offsets, 3> offsets;                      // along each
-  std::array<float, 3> low_m{}, high_m{};              // of all points, along each
+  std::array<float, 3> low_m{}, high_m{};              // of all but stray points, along each
   std::size_t points = 0;
 };
 

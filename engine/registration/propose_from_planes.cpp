@@ -76,8 +76,17 @@ std::vector<Shift> swept(float low_m, float high_m, float bin_m) {
   const float step =
       std::max(kSweepStepBins * bin_m, (high_m - low_m) / static_cast<float>(kMostSwept));
   std::vector<Shift> shifts;
-  for (float at = low_m; at <= high_m; at += step) shifts.push_back({at, 0.0F});
+  for (std::size_t i = 0; i < kMostSwept; ++i) {
+    const float at = low_m + step * static_cast<float>(i);
+    if (at > high_m) break;
+    shifts.push_back({at, 0.0F});
+  }
   return shifts;
+}
+
+// Whether enough of the source lies on planes along a direction to fix it there.
+bool fixes(const PlaneLayout::Offsets& offsets, float source_points) {
+  return offsets.total() >= kFewOnPlanes * source_points;
 }
 
 // Shifts along the target's direction `k` of the source's `offsets`, `centre_m` along them.
@@ -89,11 +98,13 @@ std::vector<Shift> shifts_along(const PlaneLayout& target,
   const float bin_m = target.bin_m;
   const float low_m = target.low_m[k] - centre_m;
   const float high_m = target.high_m[k] - centre_m;
-  if (offsets.total() < kFewOnPlanes * source_points) return swept(low_m, high_m, bin_m);
+  if (!fixes(offsets, source_points)) return swept(low_m, high_m, bin_m);
   const std::array<std::vector<float>, 2> wide{widened(target.offsets[k].count[0]),
                                                widened(target.offsets[k].count[1])};
   std::vector<Shift> all;
-  for (float metres = low_m; metres <= high_m; metres += bin_m) {
+  const std::size_t steps = target.offsets[k].count[0].size();  // what the target spans, in bins
+  for (std::size_t i = 0; i <= steps; ++i) {
+    const float metres = low_m + bin_m * static_cast<float>(i);
     const float at = (offsets.first_m + metres - target.offsets[k].first_m) / bin_m;
     const auto bin = static_cast<std::ptrdiff_t>(std::lround(at));
     all.push_back({metres, met(wide, offsets, bin)});
@@ -169,8 +180,13 @@ std::vector<Proposal> propose_from_planes(const PlaneLayout& target,
                                           const Eigen::Vector3f& centre,
                                           const std::optional<Gravity>& gravity,
                                           const std::optional<PositionPrior>& prior) {
-  const ShiftTable table(target, source, centre);
   std::vector<Proposal> proposals;
+  const auto fixed = std::count_if(
+      source.offsets.begin(), source.offsets.end(), [&](const PlaneLayout::Offsets& offsets) {
+        return fixes(offsets, static_cast<float>(source.points));
+      });
+  if (fixed < 2) return proposals;  // a floor alone: any place on any floor
+  const ShiftTable table(target, source, centre);
   for (const Turn& turn : all_turns()) {
     const Eigen::Matrix3f R = rotation_of(turn, target, source);
     Eigen::Matrix3f upright = R;

@@ -60,6 +60,29 @@ TEST(ProposeFromPlanes, SweepsADirectionAlongWhichNothingIsFixed) {
   EXPECT_LT(nearest_m(proposals, Eigen::Isometry3d::Identity(), query.centre()), 0.35);
 }
 
+TEST(ProposeFromPlanes, IsNotMovedByAPointFarOutAndEndsWhereOneIs) {
+  Surface place = room();
+  for (const float far : {1e7F, -1e7F}) {
+    place.points.emplace_back(far, -far, far);
+    place.normals.emplace_back(1.0F, 0.0F, 0.0F);
+  }
+  const Surface query = corner_of_room();
+  const auto proposals = propose_from_planes(
+      place.layouts()[0], query.layouts()[0], query.centre(), std::nullopt, std::nullopt);
+  EXPECT_LT(nearest_m(proposals, Eigen::Isometry3d::Identity(), query.centre()), 0.2);
+}
+
+TEST(ProposeFromPlanes, ProposesNothingForAFloorAlone) {
+  Surface query;
+  query.add({2, 1, 0}, {3, 0, 0}, {0, 2, 0});
+  query.add({2, 1, 0}, {0, 0, 0.1F}, {0.5F, 0, 0});
+  const auto source = query.layouts();
+  ASSERT_EQ(source.size(), 1U);
+  EXPECT_TRUE(propose_from_planes(
+                  room().layouts()[0], source[0], query.centre(), std::nullopt, std::nullopt)
+                  .empty());
+}
+
 TEST(ProposeFromPlanes, KeepsToGravityAndThePrior) {
   Random random(3);
   const Eigen::Isometry3d truth = random_pose(random);
