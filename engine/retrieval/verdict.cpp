@@ -126,8 +126,11 @@ bool is_rivalled(const Standing& best, const VerdictOptions& options) {
 bool is_taken(const Standing& best, const VerdictOptions& options) {
   if (is_rivalled(best, options) || best.judged.confidence < options.min_confidence) return false;
   const Assessed& pose = best.judged.pose;
-  const double least = pose.evidence.of_object ? options.least_alone : options.least_alone_of_place;
-  return is_sure(best, options) || confidence_alone(pose.evidence, pose.score) >= least;
+  if (is_sure(best, options)) return true;
+  const bool of_object = pose.evidence.of_object;
+  if (!of_object && pose.evidence.contradicted > options.most_contradicted_unsure) return false;
+  const double least = of_object ? options.least_alone : options.least_alone_of_place;
+  return confidence_alone(pose.evidence, pose.score) >= least;
 }
 
 // The best of the poses, and those that do not come close to it.

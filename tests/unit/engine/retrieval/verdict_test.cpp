@@ -107,6 +107,14 @@ TEST(Judge, TakesAPoseThatIsFixedWellOrSureButNoneThatSlidesOrHasAnEqual) {
   best.evidence.observability = 0.02;  // one freedom is fixed weakly
   EXPECT_NE(told(-0.3F).status, QueryStatus::kLocalized);
   best.evidence.observability = 0.1;
+  best.evidence.contradicted = 0.06;  // over an area: another place
+  best.evidence.agreeing = 20'000.0;
+  const Verdict contradicted = told(-0.3F);
+  EXPECT_GE(contradicted.judged[0].confidence, VerdictOptions{}.min_confidence);
+  EXPECT_LT(contradicted.judged[0].confidence, VerdictOptions{}.sure_confidence);
+  EXPECT_NE(contradicted.status, QueryStatus::kLocalized);
+  best.evidence.contradicted = 0.0;
+  best.evidence.agreeing = 300.0;
   rival.score = 0.73;  // 91 %
   EXPECT_GE(told(0.9F).judged[0].confidence, VerdictOptions{}.sure_confidence);
   EXPECT_EQ(told(0.9F).status, QueryStatus::kAmbiguous);
