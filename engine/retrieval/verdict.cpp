@@ -116,6 +116,10 @@ bool is_rivalled(const Standing& best, const VerdictOptions& options) {
   if (evidence.observability < options.least_observability) return true;
   const double share = best.rival_score / best.judged.pose.score;
   if (share >= options.rival_share) return true;
+  if (!evidence.of_object && share > options.near_rival_share &&
+      best.judged.confidence < options.surer_than_near_rivals) {
+    return true;
+  }
   if (is_sure(best, options)) return false;
   if (!evidence.of_object) return evidence.observability < options.least_observability_unsure;
   const double least =
@@ -140,7 +144,7 @@ std::vector<Assessed> without_close(std::span<const Assessed> poses,
   std::vector<Assessed> kept{poses[0]};
   for (std::size_t j = 1; j < poses.size(); ++j) {
     const bool close = rivals(poses[0], poses[j], entries) &&
-                       poses[j].score >= options.rival_share * poses[0].score;
+                       poses[j].score >= options.near_rival_share * poses[0].score;
     if (!close) kept.push_back(poses[j]);
   }
   return kept;

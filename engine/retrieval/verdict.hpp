@@ -28,6 +28,9 @@ struct VerdictOptions {
   double min_confidence = 0.5;
   // A rival whose score reaches this share of the best one's explains the query about as well.
   double rival_share = 0.9;
+  // And this share, below this confidence: a bay further on in a hall of equal bays.
+  double near_rival_share = 0.85;
+  double surer_than_near_rivals = 0.9;
   // From this confidence on the rest is not asked, being in it.
   double sure_confidence = 0.8;
   // Of a place, below that confidence: what fixes one freedom this weakly holds at look-alikes too.
