@@ -40,6 +40,13 @@ struct Proposal {
   std::uint32_t correspondence = 0;
 };
 
+// The rotation, turned until the two ups agree; nullopt where it tilts further than the tolerance.
+std::optional<Eigen::Matrix3f> made_upright(const Eigen::Matrix3f& R_target_source,
+                                            const Gravity& gravity);
+
+// Whether the proposal puts the sensor where it is expected.
+bool is_within(const PositionPrior& prior, const Proposal& proposal);
+
 // One proposal a correspondence: the rigid motion that lays the source keypoint's local reference
 // frame onto the target keypoint's, R = F_target F_source^T. `query` indices name `source`,
 // `target` ones `target`.

@@ -166,13 +166,6 @@ class ShiftTable {
   std::array<std::array<std::array<std::vector<Shift>, 2>, 3>, 3> shifts_;
 };
 
-bool within_prior(const Proposal& proposal, const std::optional<PositionPrior>& prior) {
-  if (!prior) return true;
-  const Eigen::Vector3f sensor =
-      proposal.R_target_source * prior->sensor_source + proposal.t_target_source;
-  return (sensor - prior->centre).norm() <= prior->radius_m;
-}
-
 }  // namespace
 
 std::vector<Proposal> propose_from_planes(const PlaneLayout& target,
@@ -189,12 +182,8 @@ std::vector<Proposal> propose_from_planes(const PlaneLayout& target,
   const ShiftTable table(target, source, centre);
   for (const Turn& turn : all_turns()) {
     const Eigen::Matrix3f R = rotation_of(turn, target, source);
-    Eigen::Matrix3f upright = R;
-    if (gravity) {
-      const Eigen::Vector3f up = R * gravity->up_source;
-      if (up.dot(gravity->up_target) < gravity->min_cosine) continue;
-      upright = Eigen::Quaternionf::FromTwoVectors(up, gravity->up_target).toRotationMatrix() * R;
-    }
+    const std::optional<Eigen::Matrix3f> upright = gravity ? made_upright(R, *gravity) : R;
+    if (!upright) continue;
     const auto direction = [&](std::size_t j) {
       return target.axes.col(static_cast<Eigen::Index>(turn.of[j]));
     };
@@ -204,10 +193,10 @@ std::vector<Proposal> propose_from_planes(const PlaneLayout& target,
           const Eigen::Vector3f t =
               a.metres * direction(0) + b.metres * direction(1) + c.metres * direction(2);
           Proposal proposal;
-          proposal.R_target_source = upright;
-          proposal.t_target_source = R * centre + t - upright * centre;
+          proposal.R_target_source = *upright;
+          proposal.t_target_source = R * centre + t - *upright * centre;
           proposal.correspondence = kNoCorrespondence;
-          if (within_prior(proposal, prior)) proposals.push_back(proposal);
+          if (!prior || is_within(*prior, proposal)) proposals.push_back(proposal);
         }
       }
     }
