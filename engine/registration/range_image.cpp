@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace landmarkdb {
 
@@ -202,21 +203,44 @@ void RangeImage::lay_patch(const Place& place,
   }
 }
 
+// Calls `visit` with the number of each of the up to eight around inner_[inner] that are compared.
+template <typename Visit>
+void RangeImage::visit_around(std::size_t inner, const Visit& visit) const {
+  const Place place = place_at(inner_[inner]);
+  const int last_row = std::min(side_ - 1, place.row + 1);
+  const int last_column = std::min(side_ - 1, place.column + 1);
+  for (int row = std::max(0, place.row - 1); row <= last_row; ++row) {
+    for (int column = std::max(0, place.column - 1); column <= last_column; ++column) {
+      const std::uint32_t beside = inner_of_cell_[index_of({place.face, row, column})];
+      if (beside != kOuter && beside != inner) visit(beside);
+    }
+  }
+}
+
+void RangeImage::fill_gaps(std::vector<Predicted>& predicted) const {
+  constexpr int kEnough = 5;  // of the eight around: beyond a straight edge there are three
+  std::vector<std::pair<std::size_t, Predicted>> filled;
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    if (predicted[i].range != kInfinity) continue;
+    int around = 0;
+    Predicted furthest{0.0F, false};
+    visit_around(i, [&](std::uint32_t beside) {
+      if (predicted[beside].range == kInfinity) return;
+      ++around;
+      if (predicted[beside].range > furthest.range) furthest = predicted[beside];
+    });
+    if (around >= kEnough) filled.emplace_back(i, furthest);
+  }
+  for (const auto& [i, patch] : filled) predicted[i] = patch;
+}
+
 std::size_t RangeImage::solid(const std::vector<signed char>& says) const {
   std::size_t count = 0;
   for (std::size_t i = 0; i < says.size(); ++i) {
     if (says[i] >= 0) continue;
-    const Place place = place_at(inner_[i]);
-    bool alone = false;
-    for (int row = std::max(0, place.row - 1); row <= std::min(side_ - 1, place.row + 1); ++row) {
-      for (int column = std::max(0, place.column - 1);
-           column <= std::min(side_ - 1, place.column + 1);
-           ++column) {
-        const std::uint32_t beside = inner_of_cell_[index_of({place.face, row, column})];
-        alone = alone || (beside != kOuter && says[beside] > 0);
-      }
-    }
-    count += alone ? 0U : 1U;
+    bool alone = true;
+    visit_around(i, [&](std::uint32_t beside) { alone = alone && says[beside] <= 0; });
+    count += alone ? 1U : 0U;
   }
   return count;
 }
@@ -233,7 +257,8 @@ SightCounts RangeImage::compare(const SightSurface& surface,
                                 const Eigen::Isometry3d& T_here_surface,
                                 float patch_m,
                                 const SightTolerance& tolerance) const {
-  const std::vector<Predicted> predicted = render(surface, T_here_surface, patch_m);
+  std::vector<Predicted> predicted = render(surface, T_here_surface, patch_m);
+  fill_gaps(predicted);
   SightCounts counts;
   counts.measured = inner_.size();
   std::vector<signed char> says(inner_.size(), 0);  // 1: agrees, -1: contradicts, 0: nothing

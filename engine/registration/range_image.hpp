@@ -86,6 +86,11 @@ class RangeImage {
                  int half,
                  const Predicted& patch,
                  std::vector<Predicted>& predicted) const;
+  // Where most of the directions around are predicted, the surface is taken to go on between its
+  // points: as far off as the furthest of those.
+  void fill_gaps(std::vector<Predicted>& predicted) const;
+  template <typename Visit>
+  void visit_around(std::size_t inner, const Visit& visit) const;
   std::size_t solid(const std::vector<signed char>& says) const;
   void measure(std::span<const Eigen::Vector3f> points);
   void divide_faces();

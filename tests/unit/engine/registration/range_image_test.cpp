@@ -79,6 +79,26 @@ TEST(RangeImage, IsMovedByNothingBehindTheSensor) {
   EXPECT_EQ(after.predicted(), before.predicted());
 }
 
+TEST(RangeImage, FillsTheGapsBetweenAnEntrysPointsAndNothingBeyondThem) {
+  constexpr float kDepth = 3.2F;
+  const RangeImage image(wall(kDepth), Eigen::Vector3f::Zero(), kStep);
+  // Points some 6 cm apart, where a cell is 5.6 cm wide: some cells have none.
+  Random random(3);
+  Points uneven;
+  for (double x = -1.0; x <= 1.0; x += 0.06) {
+    for (double y = -1.0; y <= 1.0; y += 0.06) {
+      uneven.emplace_back(static_cast<float>(x + random.uniform(-0.015, 0.015)),
+                          static_cast<float>(y + random.uniform(-0.015, 0.015)),
+                          kDepth);
+    }
+  }
+  const SightCounts counts = compare(image, uneven);
+  const double cells = std::pow(2.0 * std::atan(1.0 / static_cast<double>(kDepth)) / kStep, 2.0);
+  EXPECT_GT(static_cast<double>(counts.agree), 0.98 * cells);
+  EXPECT_LT(static_cast<double>(counts.agree), 1.1 * cells);
+  EXPECT_EQ(counts.agree, counts.predicted());
+}
+
 TEST(RangeImage, SeesThatARayWentThroughASurfaceBeforeTheWall) {
   const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
   const SightCounts counts = compare(image, patch({-0.3F, -0.3F}, {0.3F, 0.3F}, 1.0F));
