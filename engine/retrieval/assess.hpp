@@ -23,6 +23,7 @@ struct Assessed {
   Eigen::Isometry3d T_entry_proposed =
       Eigen::Isometry3d::Identity();  // sensor to entry, before refinement
   Eigen::Isometry3d T_entry_sensor = Eigen::Isometry3d::Identity();  // after
+  std::size_t candidate = 0;         // its number among the candidates, 0 did best in the test
   std::uint32_t correspondence = 0;  // that proposed it, of the entry's own list
   IcpResult icp;
   Evidence evidence;

@@ -164,7 +164,7 @@ void try_filters(const Decision& decision, std::vector<Remedy>& remedies) {
 
 void try_voxel(const Decision& decision, std::vector<Remedy>& remedies) {
   if (decision.search.lost_at != "density") return;
-  const double voxel_m = decision.input.query.spacing_m / kMostSpacingVoxels;
+  const double voxel_m = decision.search.needs_voxel_m;
   constexpr double kMillimetre = 1e-3;
   remedies.push_back({"landmarkdb-indexer add --voxel",
                       decimals(std::ceil(voxel_m / kMillimetre) * kMillimetre, 3),

@@ -21,9 +21,12 @@ struct Quota {
   std::size_t each = 0;
 };
 constexpr Quota kCoarse{.best = 80, .entries = 10, .each = 10};
-constexpr Quota kFine{.best = 20, .entries = 6, .each = 6};
+constexpr Quota kFine{.best = 24, .entries = 6, .each = 6};
 // Objects do not compete but where they stand: each has its own.
 constexpr Quota kCoarseObjects{.best = 80, .entries = 60, .each = 40};
+// The best candidates of the test are looked at closely whatever the coarse look says: before the
+// wide grid's cells a table or a rail close to the sensor stands in the way of half the view.
+constexpr std::size_t kVerifiedInAnyCase = 4;
 constexpr Quota kFineObjects{.best = 20, .entries = 20, .each = 6};
 
 // Those of `sorted` (best first) that the quota lets through, in their order.
@@ -62,11 +65,15 @@ std::vector<Assessed> assess_all_coarse(const SearchInput& input,
                                       candidates[i].T_entry_sensor);
           assessed[i].entry = matches.entry;
           assessed[i].matches = candidates[i].matches;
+          assessed[i].candidate = i;
           assessed[i].correspondence = candidates[i].correspondence;
         }
       });
   std::stable_sort(assessed.begin(), assessed.end(), [](const Assessed& a, const Assessed& b) {
     return a.score > b.score;
+  });
+  std::stable_partition(assessed.begin(), assessed.end(), [](const Assessed& a) {
+    return a.candidate < kVerifiedInAnyCase;
   });
   return assessed;
 }

@@ -52,8 +52,8 @@ class ViewCache {
   std::list<Made> dense_;
 };
 
-// A query thinner than this has too few points in a descriptor's support to look like the entry's
-// surface.
+// A part of a query thinner than this has too few points in a descriptor's support to look like an
+// object's surface.
 inline constexpr double kMostSpacingVoxels = 2.5;
 
 // What the searches share. `wanted[i]`: entry i may answer. A search loads the entries it looks at
@@ -93,9 +93,11 @@ struct EntryMatches {
 
 struct SearchResult {
   std::vector<EntryMatches> matches;
-  std::vector<Assessed> poses;    // finely assessed, in no order
-  std::string lost_at;            // the stage that had nothing left, when `poses` is empty
-  double coarsest_voxel_m = 0.0;  // of the entries that the query was too thin for; 0: none
+  std::vector<Assessed> poses;  // finely assessed, in no order
+  std::string lost_at;          // the stage that had nothing left, when `poses` is empty
+  // The working resolution at which an entry that the query was too thin for would have been
+  // searched; 0: none was.
+  double needs_voxel_m = 0.0;
 };
 
 // The robust profile: every match proposes a pose through the two local reference frames, every

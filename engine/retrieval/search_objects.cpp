@@ -73,7 +73,8 @@ void search_objects(const SearchInput& input, SearchResult& result) {
     const QueryView& view = input.views.dense_at(entry.record().options);
     if (view.prepared.size() == 0) {
       result.lost_at = "density";
-      result.coarsest_voxel_m = std::max(result.coarsest_voxel_m, entry.record().options.voxel_m);
+      if (result.needs_voxel_m == 0.0)
+        result.needs_voxel_m = input.query.spacing_m / kMostSpacingVoxels;
       continue;
     }
     if (view.descriptors.size() == 0) continue;
