@@ -40,10 +40,22 @@ struct Settings {
   int only = -1;                 // ask the frames of this place alone
   bool twins = false;            // every second place is of the same plan as the one before
   bool gravity = false;
-  bool both = false;    // without gravity, then with it
-  bool funnel = false;  // say at which stage each frame was lost
+  bool both = false;             // without gravity, then with it
+  bool funnel = false;           // say at which stage each frame was lost
+  std::string sensor = "depth";  // or "lidar"
   int threads = 2;
   std::string json;
+};
+
+// Of the normals a laser sees that looks all around: 1/3 at most (DepthFrame::normal_spread).
+constexpr double kAllAround = 1.0 / 3.0;
+
+// What a sensor at a known pose saw.
+struct TakenFrame {
+  PointCloud cloud;
+  Eigen::Isometry3d T_scene_sensor = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d up_sensor = Eigen::Vector3d::UnitZ();
+  double normal_spread = 0.0;
 };
 
 datasets::Place place_of(const Settings& settings, int i) {
@@ -88,7 +100,7 @@ CatalogEntry index_place(const datasets::Place& place,
 }
 
 // The share of the frame's points that lie near the entry's surface at the true pose.
-double scanned_share(const datasets::DepthFrame& frame, const Entry& entry) {
+double scanned_share(const TakenFrame& frame, const Entry& entry) {
   constexpr std::size_t kEvery = 37;  // of 307,200 pixels, some 8,000; no divisor of the width
   const Eigen::Vector3d origin = entry.record().prepared.origin;
   std::size_t seen = 0;
@@ -97,7 +109,7 @@ double scanned_share(const datasets::DepthFrame& frame, const Entry& entry) {
     const Eigen::Vector3f& p = frame.cloud.points[i];
     if (!p.allFinite()) continue;
     ++seen;
-    const Eigen::Vector3d there = frame.T_scene_camera * p.cast<double>() - origin;
+    const Eigen::Vector3d there = frame.T_scene_sensor * p.cast<double>() - origin;
     near += entry.grid.near(there.cast<float>()) != nullptr ? 1U : 0U;
   }
   return seen == 0 ? 0.0 : static_cast<double>(near) / static_cast<double>(seen);
@@ -141,23 +153,23 @@ void print_row(const AskedFrame& asked, const QueryResult& answer, const Eigen::
 }
 
 // Asks one frame; `asked` says what is known of it and is filled with the rest.
-void ask(const datasets::DepthFrame& frame,
+void ask(const TakenFrame& frame,
          const Localizer& localizer,
          const RunContext& context,
          AskedFrame& asked) {
   QueryOptions options;
-  if (asked.gravity) options.up = frame.up_camera;
+  if (asked.gravity) options.up = frame.up_sensor;
   const QueryResult answer = localizer.query(frame.cloud, options, context);
   asked.status = answer.status;
   asked.milliseconds = answer.timings.total.count();
   if (!answer.hypotheses.empty() && answer.hypotheses[0].scene == asked.place) {
     Eigen::Isometry3d estimate;
     estimate.matrix() = answer.hypotheses[0].T_scene_sensor;
-    const PoseError error = pose_error(frame.T_scene_camera, estimate);
+    const PoseError error = pose_error(frame.T_scene_sensor, estimate);
     asked.metres = error.metres;
     asked.degrees = error.degrees;
   }
-  print_row(asked, answer, frame.T_scene_camera);
+  print_row(asked, answer, frame.T_scene_sensor);
 }
 
 void print_funnel(const Funnel& funnel) {
@@ -194,6 +206,36 @@ Generated generate(const Settings& settings, const RunContext& context) {
   return made;
 }
 
+std::vector<Eigen::Isometry3d> sensor_poses(const datasets::Place& place,
+                                            const Settings& settings,
+                                            std::size_t count) {
+  return settings.sensor == "lidar" ? datasets::sample_upright_poses(place, count, settings.seed)
+                                    : datasets::sample_camera_poses(place, count, settings.seed);
+}
+
+TakenFrame take_frame(const datasets::Place& place,
+                      const Eigen::Isometry3d& T_scene_sensor,
+                      const Settings& settings,
+                      std::uint64_t seed,
+                      const RunContext& context) {
+  TakenFrame taken;
+  taken.T_scene_sensor = T_scene_sensor;
+  taken.up_sensor = T_scene_sensor.linear().transpose() * place.up;
+  if (settings.sensor == "lidar") {
+    datasets::LidarOptions lidar;
+    lidar.seed = seed;
+    taken.cloud = datasets::render_lidar(place, T_scene_sensor, lidar, context);
+    taken.normal_spread = kAllAround;
+    return taken;
+  }
+  datasets::DepthCameraOptions camera;
+  camera.seed = seed;
+  datasets::DepthFrame frame = datasets::render_depth(place, T_scene_sensor, camera, context);
+  taken.cloud = std::move(frame.cloud);
+  taken.normal_spread = frame.normal_spread;
+  return taken;
+}
+
 void ask_place(const Generated& made,
                std::size_t p,
                const Settings& settings,
@@ -206,13 +248,14 @@ void ask_place(const Generated& made,
       settings.funnel ? make_levels(made.entries) : std::vector<Level>{};
   const int count =
       known || settings.stranger_frames < 0 ? settings.frames : settings.stranger_frames;
-  const auto poses =
-      datasets::sample_camera_poses(made.places[p], static_cast<std::size_t>(count), settings.seed);
+  const std::vector<Eigen::Isometry3d> poses =
+      sensor_poses(made.places[p], settings, static_cast<std::size_t>(count));
   for (int f = 0; f < count; ++f) {
-    datasets::DepthCameraOptions camera;
-    camera.seed = settings.seed + static_cast<std::uint64_t>(f);
-    const auto frame =
-        datasets::render_depth(made.places[p], poses[static_cast<std::size_t>(f)], camera, context);
+    const TakenFrame frame = take_frame(made.places[p],
+                                        poses[static_cast<std::size_t>(f)],
+                                        settings,
+                                        settings.seed + static_cast<std::uint64_t>(f),
+                                        context);
     for (const bool gravity : {false, true}) {
       if (!settings.both && gravity != settings.gravity) continue;
       AskedFrame one;
@@ -226,9 +269,9 @@ void ask_place(const Generated& made,
       asked.push_back(one);
       if (!settings.funnel || !known) continue;
       QueryOptions options;
-      if (gravity) options.up = frame.up_camera;
+      if (gravity) options.up = frame.up_sensor;
       print_funnel(
-          follow(frame.cloud, options, made.entries, levels, p, frame.T_scene_camera, context));
+          follow(frame.cloud, options, made.entries, levels, p, frame.T_scene_sensor, context));
     }
   }
 }
@@ -237,8 +280,8 @@ std::string in_words(const Settings& s) {
   return std::to_string(s.catalogs) + " catalogues of " + std::to_string(s.places) +
          " generated places, " + std::to_string(s.points) + " points each, " +
          std::to_string(s.frames) + " frames a place, " + std::to_string(s.strangers) +
-         " strangers, seed " + std::to_string(s.seed) + ", " + std::to_string(s.threads) +
-         " threads";
+         " strangers, " + s.sensor + ", seed " + std::to_string(s.seed) + ", " +
+         std::to_string(s.threads) + " threads";
 }
 
 int run(Settings settings) {
@@ -289,6 +332,8 @@ int main(int argc, char** argv) {
   app.add_flag("--both", settings.both, "Ask every frame without gravity and with it");
   app.add_option("--json", settings.json, "Write the summary as JSON too");
   app.add_flag("--funnel", settings.funnel, "Say at which stage each frame was lost");
+  app.add_option("--sensor", settings.sensor, "depth: a Kinect's frame; lidar: a turn of 16 lines")
+      ->check(CLI::IsMember({"depth", "lidar"}));
   app.add_option("--threads", settings.threads, "Threads");
   CLI11_PARSE(app, argc, argv);
   try {
