@@ -19,14 +19,35 @@ RangeImage::RangeImage(std::span<const Eigen::Vector3f> points,
                        const Eigen::Vector3f& viewpoint,
                        double finest_step_rad)
     : viewpoint_(viewpoint), step_rad_(finest_step_rad) {
-  constexpr double kEnough = 0.6;        // of the measured cells have measured neighbours
-  constexpr double kCoarsestRad = 0.14;  // 8 deg
-  for (;; step_rad_ *= 2.0) {
-    measure(points);
-    if (complete_share() >= kEnough || step_rad_ >= kCoarsestRad) break;
-  }
+  choose_step(points);
   measure_cone(points);
   number_inner();
+}
+
+// The finest step at which most of the measured cells have measured neighbours, or enough have: a
+// view in shreds is compared where it is whole. Where there is no such step, that at which most of
+// the sphere is covered.
+void RangeImage::choose_step(std::span<const Eigen::Vector3f> points) {
+  constexpr double kMost = 0.6;          // of the measured cells
+  constexpr std::size_t kEnough = 300;   // an eighth of a depth camera's view
+  constexpr double kCoarsestRad = 0.14;  // 8 deg
+  double best_step_rad = step_rad_;
+  double most_covered = -1.0;  // solid angle
+  for (;; step_rad_ *= 2.0) {
+    measure(points);
+    const Completeness found = completeness();
+    const auto complete = static_cast<double>(found.complete);
+    if (complete >= kMost * static_cast<double>(found.measured)) return;
+    if (found.complete >= kEnough) return;
+    const double covered = complete * step_rad_ * step_rad_;
+    if (covered > most_covered) {
+      most_covered = covered;
+      best_step_rad = step_rad_;
+    }
+    if (step_rad_ >= kCoarsestRad) break;
+  }
+  step_rad_ = best_step_rad;
+  measure(points);
 }
 
 void RangeImage::measure_cone(std::span<const Eigen::Vector3f> points) {
@@ -90,14 +111,13 @@ void RangeImage::measure(std::span<const Eigen::Vector3f> points) {
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) widened_.push_back(widen(cell));
 }
 
-double RangeImage::complete_share() const {
-  std::size_t measured = 0;
-  std::size_t complete = 0;
+RangeImage::Completeness RangeImage::completeness() const {
+  Completeness found;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
-    measured += cells_[i].furthest > 0.0F ? 1U : 0U;
-    complete += widened_[i].furthest > 0.0F ? 1U : 0U;
+    found.measured += cells_[i].furthest > 0.0F ? 1U : 0U;
+    found.complete += widened_[i].furthest > 0.0F ? 1U : 0U;
   }
-  return measured == 0 ? 0.0 : static_cast<double>(complete) / static_cast<double>(measured);
+  return found;
 }
 
 int RangeImage::cell_along(float tangent) const {

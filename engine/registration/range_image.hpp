@@ -92,9 +92,14 @@ class RangeImage {
   template <typename Visit>
   void visit_around(std::size_t inner, const Visit& visit) const;
   std::size_t solid(const std::vector<signed char>& says) const;
+  // Cells that were measured, and of them those whose neighbours were too.
+  struct Completeness {
+    std::size_t measured = 0, complete = 0;
+  };
+  void choose_step(std::span<const Eigen::Vector3f> points);
   void measure(std::span<const Eigen::Vector3f> points);
   void divide_faces();
-  double complete_share() const;
+  Completeness completeness() const;
   int cell_along(float tangent) const;
   Place place_of(const Eigen::Vector3f& ray) const;
   Place place_at(std::size_t cell) const;

@@ -246,6 +246,22 @@ TEST(RangeImage, WidensItsCellsForSparseRings) {
   EXPECT_EQ(compare(image, nearer).crossed, counts.measured);
 }
 
+TEST(RangeImage, KeepsItsCellsFineWhereAViewIsInShreds) {
+  // Strips of three degrees and a bit, a degree apart: of each the middle is whole, less than half
+  // of what was measured.
+  Points strips;
+  for (const Eigen::Vector3f& p : wall(2.0F)) {
+    const double degrees = std::atan2(p.x(), p.z()) / kStep;
+    if (std::fmod(degrees + 90.0, 5.0) < 3.3) strips.push_back(p);
+  }
+  const RangeImage image(strips, Eigen::Vector3f::Zero(), kStep);
+  EXPECT_EQ(image.step_rad(), kStep);
+  const SightCounts counts = compare(image, patch({-1, -1}, {1, 1}, 2.0F));
+  EXPECT_GT(counts.measured, 300U);
+  EXPECT_LT(counts.measured, 1500U);
+  EXPECT_EQ(counts.agree, counts.predicted());
+}
+
 TEST(RangeImage, HoldsAgainstCloudsThatHoldNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const Points& points :
