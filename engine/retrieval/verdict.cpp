@@ -116,12 +116,7 @@ bool is_rivalled(const Standing& best, const VerdictOptions& options) {
   if (evidence.observability < options.least_observability) return true;
   const double share = best.rival_score / best.judged.pose.score;
   if (share >= options.rival_share) return true;
-  if (!evidence.of_object && share > options.near_rival_share &&
-      best.judged.confidence < options.surer_than_near_rivals) {
-    return true;
-  }
-  if (is_sure(best, options)) return false;
-  if (!evidence.of_object) return evidence.observability < options.least_observability_unsure;
+  if (!evidence.of_object || is_sure(best, options)) return false;
   const double least =
       share >= options.reach_share ? options.least_contrast_in_reach : options.least_contrast;
   return evidence.contrast < least;
@@ -131,10 +126,9 @@ bool is_taken(const Standing& best, const VerdictOptions& options) {
   if (is_rivalled(best, options) || best.judged.confidence < options.min_confidence) return false;
   const Assessed& pose = best.judged.pose;
   if (is_sure(best, options)) return true;
-  const bool of_object = pose.evidence.of_object;
-  if (!of_object && pose.evidence.contradicted > options.most_contradicted_unsure) return false;
-  const double least = of_object ? options.least_alone : options.least_alone_of_place;
-  return confidence_alone(pose.evidence, pose.score) >= least;
+  return pose.evidence.of_object
+             ? confidence_alone(pose.evidence, pose.score) >= options.least_alone
+             : pose.evidence.contradicted <= options.most_contradicted;
 }
 
 // The best of the poses, and those that do not come close to it.
@@ -144,7 +138,7 @@ std::vector<Assessed> without_close(std::span<const Assessed> poses,
   std::vector<Assessed> kept{poses[0]};
   for (std::size_t j = 1; j < poses.size(); ++j) {
     const bool close = rivals(poses[0], poses[j], entries) &&
-                       poses[j].score >= options.near_rival_share * poses[0].score;
+                       poses[j].score >= options.close_share * poses[0].score;
     if (!close) kept.push_back(poses[j]);
   }
   return kept;

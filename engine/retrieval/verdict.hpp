@@ -27,16 +27,14 @@ struct Verdict {
 struct VerdictOptions {
   double min_confidence = 0.5;
   // A rival whose score reaches this share of the best one's explains the query about as well.
-  double rival_share = 0.9;
-  // And this share, below this confidence: a bay further on in a hall of equal bays.
-  double near_rival_share = 0.85;
-  double surer_than_near_rivals = 0.9;
+  double rival_share = 0.93;
+  // What would be localized without the rivals that reach this share is ambiguous.
+  double close_share = 0.85;
   // From this confidence on the rest is not asked, being in it.
   double sure_confidence = 0.8;
-  // Of a place, below that confidence: what fixes one freedom this weakly holds at look-alikes too.
-  double least_observability_unsure = 0.025;
-  // And what an area of the view contradicts by more than this share is another place.
-  double most_contradicted_unsure = 0.05;
+  // Of a place, below that confidence: what an area of the view contradicts by more than this share
+  // is another place.
+  double most_contradicted = 0.07;
   // Of an object, below that confidence. A rival against which hardly more of the points that tell
   // the two apart speak for the best is one too, and one in reach (of this share) against which
   // less than two thirds do (0.3 = 0.65 - 0.35).
@@ -50,8 +48,6 @@ struct VerdictOptions {
   // answers nothing, however far the others are behind. The threshold of the log-odds -1: 1 / (1 +
   // e).
   double least_alone = 0.27;
-  // The same of a place's: -3. What explains less than half of the view is no answer.
-  double least_alone_of_place = 0.05;
   // Two poses are different places when they are further apart than these (in cells: 0.5 m in a
   // room described at 5 cm, and no more than that in coarser ones), or in different entries.
   double different_translation_cells = 10.0;

@@ -33,7 +33,6 @@ TEST(ConfidenceOf, RisesWithWhatSpeaksForAPoseAndFallsWithWhatSpeaksAgainst) {
   };
   EXPECT_LT(less(&Evidence::explained, 0.8), base);
   EXPECT_LT(less(&Evidence::contrast, 0.1), base);
-  EXPECT_LT(less(&Evidence::crossed, 0.2), base);
   EXPECT_LT(less(&Evidence::observability, 0.0), base);
   EXPECT_LT(less(&Evidence::agreeing, 2.0), base);
   EXPECT_LT(less(&Evidence::contradicted, 0.05), base);

@@ -155,7 +155,7 @@ TEST(Explain, SaysWhichVoxelAThinCloudWouldHaveNeeded) {
   PointCloud thin = frame.cloud;
   thin.points.clear();
   thin.width = thin.height = 0;
-  for (std::size_t i = 0; i < frame.cloud.size(); i += 60)
+  for (std::size_t i = 0; i < frame.cloud.size(); i += 600)
     thin.points.push_back(frame.cloud.points[i]);
   const QueryResult answer = lobby().alone->query(thin, explained(), {});
   ASSERT_THAT(answer.reason, HasSubstr("too far for every entry"));
@@ -168,6 +168,7 @@ TEST(Explain, SaysWhichVoxelAThinCloudWouldHaveNeeded) {
 TEST(ConfidenceTerms, CostNothingWhereAFigureIsIdeal) {
   Evidence evidence;
   evidence.overlap = evidence.explained = evidence.coverage = evidence.observability = 1.0;
+  evidence.agreeing = 200.0;
   for (const ConfidenceTerm& term : confidence_terms(evidence, 1.0, 1.0)) {
     EXPECT_EQ(term.cost, 0.0) << term.name;
   }
@@ -176,6 +177,7 @@ TEST(ConfidenceTerms, CostNothingWhereAFigureIsIdeal) {
 TEST(ConfidenceTerms, PutTheCostliestFirst) {
   Evidence evidence;
   evidence.overlap = evidence.explained = evidence.coverage = evidence.observability = 1.0;
+  evidence.agreeing = 200.0;
   EXPECT_EQ(confidence_terms(evidence, 1.0, 0.0).at(0).name, "margin");
   evidence.explained = 0.1;
   EXPECT_EQ(confidence_terms(evidence, 1.0, 1.0).at(0).name, "explained");

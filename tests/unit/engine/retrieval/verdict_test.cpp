@@ -91,36 +91,39 @@ std::vector<Assessed> compared(Assessed best, Assessed rival, float contrast) {
   return {best, rival};
 }
 
-TEST(Judge, TakesAPoseThatIsFixedWellOrSureButNoneThatSlidesOrHasAnEqual) {
+TEST(Judge, TakesNoPoseThatHasAnEqualOrSlides) {
   Assessed best = good(0, kZero, 0.8);
   best.evidence.agreeing = 300.0;
-  Assessed rival = good(0, {5, 0, 0}, 0.71);  // 89 % of the best one's score
+  Assessed rival = good(0, {5, 0, 0}, 0.73);  // 91 % of the best one's score
   const auto told = [&](float contrast) {
     return judge(compared(best, rival, contrast), entries(1, 0.05), kZero, {});
   };
-  const Verdict sure = told(0.9F);
-  EXPECT_GE(sure.judged[0].confidence, VerdictOptions{}.sure_confidence);
-  EXPECT_EQ(sure.status, QueryStatus::kLocalized);
-  const Verdict unsure = told(-0.3F);
-  EXPECT_LT(unsure.judged[0].confidence, VerdictOptions{}.sure_confidence);
-  EXPECT_EQ(unsure.status, QueryStatus::kAmbiguous);
-  rival.score = 0.66;  // 83 %: no rival to one that is fixed well
-  const Verdict led = told(-0.9F);
-  EXPECT_LT(led.judged[0].confidence, VerdictOptions{}.sure_confidence);
-  EXPECT_EQ(led.status, QueryStatus::kLocalized);
-  best.evidence.observability = 0.02;  // one freedom is fixed weakly
-  EXPECT_NE(told(-0.3F).status, QueryStatus::kLocalized);
-  best.evidence.observability = 0.1;
-  best.evidence.contradicted = 0.06;  // over an area: another place
-  EXPECT_LT(told(-0.3F).judged[0].confidence, VerdictOptions{}.sure_confidence);
-  EXPECT_NE(told(-0.3F).status, QueryStatus::kLocalized);
-  best.evidence.contradicted = 0.0;
-  rival.score = 0.73;  // 91 %
-  EXPECT_GE(told(0.9F).judged[0].confidence, VerdictOptions{}.sure_confidence);
+  EXPECT_EQ(told(0.9F).status, QueryStatus::kLocalized);
+  rival.score = 0.76;  // 95 %
   EXPECT_EQ(told(0.9F).status, QueryStatus::kAmbiguous);
-  rival.score = 0.71;
+  EXPECT_GE(told(0.9F).judged[0].confidence, 0.5) << "sure, and still ambiguous";
+  rival.score = 0.73;
+  EXPECT_LT(told(-0.9F).judged[0].confidence, told(0.9F).judged[0].confidence);
   best.evidence.observability = 0.005;
   EXPECT_NE(told(0.9F).status, QueryStatus::kLocalized);
+}
+
+TEST(Judge, TakesNoUnsurePoseThatAnAreaOfTheViewContradicts) {
+  Assessed best = good(0, kZero, 0.8);
+  Assessed rival = good(0, {5, 0, 0}, 0.5);
+  const auto verdict = [&](double contradicted, double agreeing) {
+    best.evidence.contradicted = contradicted;
+    best.evidence.agreeing = agreeing;
+    return judge(compared(best, rival, 0.2F), entries(1, 0.05), kZero, {});
+  };
+  const Verdict unsure = verdict(0.09, 30.0);
+  EXPECT_GE(unsure.judged[0].confidence, 0.5);
+  EXPECT_LT(unsure.judged[0].confidence, VerdictOptions{}.sure_confidence);
+  EXPECT_EQ(unsure.status, QueryStatus::kNotFound);
+  EXPECT_EQ(verdict(0.06, 30.0).status, QueryStatus::kLocalized);
+  const Verdict sure = verdict(0.09, 4000.0);
+  EXPECT_GE(sure.judged[0].confidence, VerdictOptions{}.sure_confidence);
+  EXPECT_EQ(sure.status, QueryStatus::kLocalized);
 }
 
 TEST(Judge, CallsTheSamePoseInAnotherEntryARival) {
