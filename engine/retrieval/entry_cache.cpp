@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "engine/base/error.hpp"
-
 namespace landmarkdb {
 
 namespace {
@@ -17,13 +15,12 @@ std::size_t bytes_of(const std::vector<Value>& values) {
   return values.size() * sizeof(Value);
 }
 
-// What a source throws for a scene that will be no better next time.
+}  // namespace
+
 bool is_damage(const Error& error) {
   return error.code() == ErrorCode::kDataLoss || error.code() == ErrorCode::kUnimplemented ||
          error.code() == ErrorCode::kInvalidArgument;
 }
-
-}  // namespace
 
 std::size_t memory_bytes(const Entry& entry) {
   const SceneRecord& record = entry.record();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/error.hpp"
 #include "engine/base/run_context.hpp"
 #include "engine/retrieval/entry.hpp"
 #include "engine/types/scene_source.hpp"
@@ -70,6 +71,11 @@ class EntryCache {
   std::size_t bytes_ = 0;
   std::uint64_t loads_ = 0, let_go_ = 0;
 };
+
+// Whether the scene itself cannot be served, and will not be next time (damaged, of a newer
+// version, too large for a grid), so that the others can; not so a request to stop, or a database
+// that cannot be read.
+bool is_damage(const Error& error);
 
 // What the entry takes, roughly: its points, grids and what of its record is loaded.
 std::size_t memory_bytes(const Entry& entry);

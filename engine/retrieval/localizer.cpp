@@ -230,17 +230,13 @@ Base make_base(const Catalog& catalog, std::size_t most_exact_rows, const RunCon
     try {
       stored.record =
           stored.source->load(whole[i] ? SceneParts::kWhole : SceneParts::kSurface, alone);
+      if (whole[i]) stored.source = nullptr;  // there is nothing left to be read
+      base.entries[i] = std::make_shared<const Entry>(
+          whole[i] ? make_entry(std::move(stored), alone) : make_outline(std::move(stored)));
     } catch (const Error& error) {
-      if (error.code() != ErrorCode::kDataLoss && error.code() != ErrorCode::kUnimplemented) throw;
+      if (!is_damage(error)) throw;
       base.damage[i] = error.what();
-      return;
     }
-    if (!whole[i]) {
-      base.entries[i] = std::make_shared<const Entry>(make_outline(std::move(stored)));
-      return;
-    }
-    stored.source = nullptr;  // there is nothing left to be read
-    base.entries[i] = std::make_shared<const Entry>(make_entry(std::move(stored), context));
   });
   return base;
 }

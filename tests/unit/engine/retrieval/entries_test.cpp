@@ -73,6 +73,20 @@ TEST_F(OnDemand, ASceneThatTurnsOutDamagedHarmsNoOther) {
   }
 }
 
+TEST_F(OnDemand, ASceneTooLargeToBeServedHarmsNoOther) {
+  auto vast = std::make_shared<SceneRecord>(*in_memory->entries[1].record);
+  vast->prepared.points[0].x() = 1e9F;
+  auto catalog = std::make_shared<Catalog>(*in_memory);
+  catalog->entries[1].record = vast;
+  const Localizer localizer(shelved(*catalog, shelves), {});
+  ASSERT_EQ(localizer.damaged().size(), 1U);
+  EXPECT_EQ(localizer.damaged()[0].first, 1U);
+  EXPECT_NE(localizer.damaged()[0].second.find("too small for points"), std::string::npos);
+  const QueryResult got = ask(localizer);
+  ASSERT_FALSE(got.hypotheses.empty());
+  EXPECT_EQ(got.hypotheses[0].scene, "room 2");
+}
+
 TEST_F(OnDemand, ThePaperSearchesWhatIsNotInMemory) {
   QueryOptions options;
   options.profile = Profile::kPaper;
