@@ -110,6 +110,7 @@ void read_table(const CsvTable& table,
                 Samples& samples) {
   const std::size_t right = need_column(table, "right");
   const std::size_t place = need_column(table, "place");
+  const std::size_t catalog = table.find("catalog");  // places of two catalogues share their names
   std::vector<std::size_t> columns;
   for (const Feature& feature : features) columns.push_back(need_column(table, feature.column));
   for (const CsvRow& row : table.rows) {
@@ -123,7 +124,9 @@ void read_table(const CsvTable& table,
     for (std::size_t i = 0; i < columns.size(); ++i) {
       read.features.push_back(features[i].value(csv_number(table, row, columns[i])));
     }
-    const std::string name = table.file + " " + row.fields[place];
+    const bool numbered = catalog < table.columns.size();
+    const std::string name =
+        table.file + " " + (numbered ? row.fields[catalog] + " " : "") + row.fields[place];
     const auto known = std::find(samples.place_names.begin(), samples.place_names.end(), name);
     samples.places.push_back(static_cast<std::size_t>(known - samples.place_names.begin()));
     if (known == samples.place_names.end()) samples.place_names.push_back(name);

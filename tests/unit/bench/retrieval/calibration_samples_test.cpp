@@ -64,6 +64,13 @@ TEST(MakeSamples, TellsPlacesOfOneNameInTwoFilesApart) {
   EXPECT_THAT(samples.places, ElementsAre(0U, 1U, 0U, 2U, 3U, 2U));
 }
 
+TEST(MakeSamples, TellsPlacesOfTwoCataloguesOfOneFileApart) {
+  const Samples samples = samples_of(
+      {table_of("place,right,margin,catalog\np,1,1,0\np,0,1,1\nq,0,1,1\np,1,1,0\n")}, {"margin"});
+  EXPECT_THAT(samples.place_names, ElementsAre("a.csv 0 p", "a.csv 1 p", "a.csv 1 q"));
+  EXPECT_THAT(samples.places, ElementsAre(0U, 1U, 2U, 0U));
+}
+
 TEST(MakeSamples, CountsQueriesWithoutAPoseApart) {
   const Samples samples =
       samples_of({table_of(kHeader + "p,1,1,1,0,1,1,9,x\nq,0,1,1,0,0,1,9,x\nq,0,0,0,0,0,0,0,x\n")},
