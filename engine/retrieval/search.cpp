@@ -6,6 +6,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/parallel.hpp"
+#include "engine/retrieval/half_turns.hpp"
 #include "engine/retrieval/verdict.hpp"
 
 namespace landmarkdb {
@@ -71,6 +72,29 @@ std::vector<Assessed> assess_all_coarse(const SearchInput& input,
   return assessed;
 }
 
+// Half-turns of the best poses of each object, which proposals alone may miss, assessed as they are
+// and sorted in among them.
+void add_half_turns(const SearchInput& input,
+                    const MeetingOf& meeting_of,
+                    const SearchResult& result,
+                    std::vector<Assessed>& assessed) {
+  constexpr std::size_t kTurnedOfEach = 2;
+  std::map<std::size_t, std::size_t> taken;  // by entry
+  std::vector<Candidate> turned;
+  for (const Assessed& pose : assessed) {
+    if (++taken[pose.entry] > kTurnedOfEach) continue;
+    for (const Eigen::Isometry3d& turn :
+         half_turns(input.entries[pose.entry].record().prepared.points)) {
+      turned.push_back({pose.matches, turn * pose.T_entry_sensor, 0.0F, pose.correspondence});
+    }
+  }
+  const std::vector<Assessed> more = assess_all_coarse(input, turned, meeting_of, result);
+  assessed.insert(assessed.end(), more.begin(), more.end());
+  std::stable_sort(assessed.begin(), assessed.end(), [](const Assessed& a, const Assessed& b) {
+    return a.score > b.score;
+  });
+}
+
 // The best poses, one of each that refinement has carried to the same spot, and only so many of
 // what the verdict takes for one place, so that its rivals are looked at as closely.
 std::vector<Assessed> best_distinct(const std::vector<Assessed>& assessed,
@@ -100,12 +124,12 @@ std::vector<Assessed> best_distinct(const std::vector<Assessed>& assessed,
 
 }  // namespace
 
-const QueryView& ViewCache::view_of(const CleanQuery& query,
-                                    const FeatureOptions& options,
-                                    std::list<Made>& made) {
+const QueryView& ViewCache::add(const FeatureOptions& options,
+                                const std::function<QueryView()>& make,
+                                std::list<Made>& made) {
   made.push_back({options, {}});
   try {
-    made.back().view = view_query(query, options, seed_, context_, timings_);
+    made.back().view = make();
   } catch (const Error& error) {
     // Too small, too flat or too wide a cloud at this resolution; another entry's may suit it.
     if (error.code() != ErrorCode::kInvalidArgument) throw;
@@ -117,7 +141,8 @@ const QueryView& ViewCache::at(const FeatureOptions& options) {
   for (const Made& made : made_) {
     if (made.options == options) return made.view;
   }
-  return view_of(query_, options, made_);
+  return add(
+      options, [&] { return view_query(query_, options, seed_, context_, timings_); }, made_);
 }
 
 const QueryView& ViewCache::dense_at(const FeatureOptions& options) {
@@ -128,7 +153,8 @@ const QueryView& ViewCache::dense_at(const FeatureOptions& options) {
     const StageTimer timer(timings_.preprocess);
     return dense_part(query_, kMostSpacingVoxels * options.voxel_m, context_);
   }();
-  return view_of(dense, options, dense_);
+  return add(
+      options, [&] { return view_for_objects(dense, options, context_, timings_); }, dense_);
 }
 
 std::size_t ViewCache::keypoints() const {
@@ -200,6 +226,7 @@ void assess_candidates(const SearchInput& input,
   {
     const StageTimer timer(input.timings.icp);
     assessed = assess_all_coarse(input, candidates, meeting_of, result);
+    if (objects) add_half_turns(input, meeting_of, result, assessed);
   }
   const StageTimer timer(input.timings.verify);
   std::vector<Assessed> best = best_distinct(assessed, input.entries, input.query.centre);
