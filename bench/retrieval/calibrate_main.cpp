@@ -41,7 +41,8 @@ std::string features_help() {
   std::string text = "Fit these alone, a,b,c, of:";
   for (const Feature& feature : all_features()) text += " " + std::string(feature.name);
   return text +
-         " (the last four only when named; contrast and root_contradicted where all files have "
+         " (those from log_agreeing on only when named; contrast and root_contradicted where all "
+         "files have "
          "them)";
 }
 

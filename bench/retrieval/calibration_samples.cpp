@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kFullMargin = 0.4;          // as in engine/retrieval/confidence.cpp
 constexpr double kFullObservability = 0.05;  // likewise
+constexpr double kFullStructure = 0.3;       // as in engine/retrieval/object_confidence.cpp
 
 double as_it_is(double x) { return x; }
 double log_count(double x) { return std::log1p(std::max(x, 0.0)); }
@@ -44,6 +45,15 @@ const Feature kFeatures[] = {
     {"quality", "quality", "quality", as_it_is, kOnRequest},
     {"coverage", "coverage", "coverage", as_it_is, kOnRequest},
     {"outgrown", "outgrown", "outgrown", as_it_is, kOnRequest},
+    {"closeness", "closeness", "closeness", as_it_is, kOnRequest},
+    {"structure",
+     "structure",
+     "min(1, structure / 0.3)",
+     [](double x) { return std::min(1.0, x / kFullStructure); },
+     kOnRequest},
+    {"confirmed", "confirmed", "confirmed", as_it_is, kOnRequest},
+    {"continued", "continued", "continued", as_it_is, kOnRequest},
+    {"log_seen", "seen_points", "log(1 + seen points)", log_count, kOnRequest},
 };
 
 std::string known_names() {

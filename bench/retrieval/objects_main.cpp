@@ -35,7 +35,9 @@ void print_header() {
   std::puts(
       "place,frame,spread,status,right,metres,degrees,confidence,quality,overlap,explained,"
       "coverage,crossed,margin,observability,inliers,keypoints,rmse_m,agreeing,contrast,"
-      "contradicted,outgrown,catalog,ms,rank,object,symmetric,unhidden,pixels,scanner");
+      "contradicted,outgrown,catalog,ms,rank,object,symmetric,unhidden,pixels,scanner,"
+      "preprocess_ms,keypoints_ms,describe_ms,match_ms,pose_ms,icp_ms,verify_ms,"
+      "seen_points,closeness,structure,confirmed,continued");
 }
 
 void print_row(const QueryResult& answer,
@@ -64,7 +66,7 @@ void print_row(const QueryResult& answer,
               fit.free_space_violation,
               fit.margin,
               fit.observability);
-  std::printf("%u,%lu,%.5f,%.0f,%.4f,%.4f,%.4f,%.*s,%.0f,%zu,%s,%d,%.3f,%zu,%d\n",
+  std::printf("%u,%lu,%.5f,%.0f,%.4f,%.4f,%.4f,%.*s,%.0f,%zu,%s,%d,%.3f,%zu,%d,",
               hypothesis.counts.inliers,
               static_cast<unsigned long>(answer.query.keypoints),
               fit.rmse_m,
@@ -81,6 +83,21 @@ void print_row(const QueryResult& answer,
               judged.unhidden,
               judged.pixels,
               asked.options.sensor == datasets::ObjectSensor::kScanner ? 1 : 0);
+  const StageTimings& timings = answer.timings;
+  std::printf("%.0f,%.0f,%.0f,%.0f,%.0f,%.0f,%.0f,",
+              timings.preprocess.count(),
+              timings.keypoints.count(),
+              timings.describe.count(),
+              timings.match.count(),
+              timings.pose.count(),
+              timings.icp.count(),
+              timings.verify.count());
+  std::printf("%.0f,%.4f,%.4f,%.4f,%.4f\n",
+              fit.seen_points,
+              fit.closeness,
+              fit.structure,
+              fit.confirmed,
+              fit.continued);
   std::fflush(stdout);
 }
 

@@ -8,7 +8,9 @@
 #include <span>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include "engine/base/parallel.hpp"
 #include "engine/cloud/voxel_grid.hpp"
@@ -54,6 +56,40 @@ PlaneFit fit_plane(const CellGrid& grid,
   fit.sigma_m = std::sqrt(std::max(solver.eigenvalues()(0), 0.0F));
   if (!fit.normal.allFinite()) fit.sigma_m = std::numeric_limits<float>::infinity();
   return fit;
+}
+
+// What a neighbourhood scatters about a surface that bends: a quadric over the plane fitted.
+// Infinite where there are too few points for one.
+float scatter_about_quadric(const CellGrid& grid,
+                            const PlaneFit& plane,
+                            std::span<const CellGrid::Found> found,
+                            float radius_m) {
+  constexpr std::size_t kParameters = 6;
+  constexpr std::size_t kFewest = 2 * kParameters;
+  if (found.size() < kFewest || !std::isfinite(plane.sigma_m)) {
+    return std::numeric_limits<float>::infinity();
+  }
+  using Vector6d = Eigen::Matrix<double, kParameters, 1>;
+  Eigen::Matrix<double, kParameters, kParameters> A =
+      Eigen::Matrix<double, kParameters, kParameters>::Zero();
+  Vector6d b = Vector6d::Zero();
+  double squares = 0.0;
+  const Eigen::Vector3f right = plane.normal.unitOrthogonal();
+  const Eigen::Vector3f up = plane.normal.cross(right);
+  for (const CellGrid::Found& f : found) {
+    const Eigen::Vector3f d = (grid.point(f.place) - plane.mean) / radius_m;
+    const auto x = static_cast<double>(right.dot(d));
+    const auto y = static_cast<double>(up.dot(d));
+    const auto z = static_cast<double>(plane.normal.dot(d));
+    Vector6d row;
+    row << 1.0, x, y, x * x, x * y, y * y;
+    A.noalias() += row * row.transpose();
+    b += z * row;
+    squares += z * z;
+  }
+  const double left = squares - b.dot(A.ldlt().solve(b));
+  return radius_m * static_cast<float>(std::sqrt(std::max(left, 0.0) /
+                                                 static_cast<double>(found.size() - kParameters)));
 }
 
 float range_of(const PreparedCloud& cloud, std::size_t i) {
@@ -106,14 +142,18 @@ std::vector<float> flatness(const PreparedCloud& cloud,
                             const CellGrid& grid,
                             std::span<const std::uint32_t> sample,
                             double radius_m,
+                            SurfaceShape shape,
                             const RunContext& context) {
   std::vector<float> sigma(sample.size());
   parallel_chunks(sample.size(), context.threads, [&](std::size_t begin, std::size_t end) {
     std::vector<CellGrid::Found> found;
     for (std::size_t k = begin; k < end; ++k) {
       if ((k - begin) % kBlock == 0) context.check("preprocess");
-      const float radius = noise_radius_m(radius_m, range_of(cloud, sample[k]));
-      sigma[k] = fit_plane(grid, cloud.points[sample[k]], radius, found).sigma_m;
+      const bool bent = shape == SurfaceShape::kBent;
+      const float radius = bent ? static_cast<float>(radius_m)
+                                : noise_radius_m(radius_m, range_of(cloud, sample[k]));
+      const PlaneFit plane = fit_plane(grid, cloud.points[sample[k]], radius, found);
+      sigma[k] = bent ? scatter_about_quadric(grid, plane, found, radius) : plane.sigma_m;
     }
   });
   std::erase_if(sigma, [](float value) { return !std::isfinite(value); });
@@ -153,14 +193,15 @@ float RangeNoise::at(float range_m) const {
 
 RangeNoise measure_range_noise(const PreparedCloud& cloud,
                                double radius_m,
-                               const RunContext& context) {
+                               const RunContext& context,
+                               SurfaceShape shape) {
   RangeNoise noise;
   noise.first_range_m = 10.0 * cloud.resolution_m;
   if (cloud.viewpoints.empty()) return noise;
   const CellGrid grid(cloud.points, radius_m / kCellsPerRadius);
   std::vector<std::vector<float>> bins;
   for (const std::vector<std::uint32_t>& sample : sample_bins(cloud, noise.first_range_m)) {
-    bins.push_back(flatness(cloud, grid, sample, radius_m, context));
+    bins.push_back(flatness(cloud, grid, sample, radius_m, shape, context));
   }
   std::vector<Bin> measured;
   for (std::vector<float>& bin : bins) {

@@ -18,11 +18,16 @@ struct RangeNoise {
   float at(float range_m) const;
 };
 
-// Measures it on a cloud with normals: in each bin of range the plane fits of the flattest quarter
-// of the points leave the noise; the rest have structure of their own.
+// What the surface around a point is taken for where its noise is measured. Walls and floors are
+// flat; what is described at millimetres bends, and the bend of a figurine is no noise.
+enum class SurfaceShape { kFlat, kBent };
+
+// Measures it on a cloud with normals: in each bin of range the fits of the flattest quarter of the
+// points leave the noise; the rest have structure of their own.
 RangeNoise measure_range_noise(const PreparedCloud& cloud,
                                double radius_m,
-                               const RunContext& context);
+                               const RunContext& context,
+                               SurfaceShape shape = SurfaceShape::kFlat);
 
 // Where the noise is a good part of the resolution, lays each point onto the plane of a
 // neighbourhood as much wider as the noise asks, unless that neighbourhood is no noisy plane, and

@@ -172,6 +172,12 @@ SightCounts& SightCounts::operator+=(const SightCounts& other) {
   return *this;
 }
 
+OutlineCounts& OutlineCounts::operator+=(const OutlineCounts& other) {
+  measured += other.measured;
+  continued += other.continued;
+  return *this;
+}
+
 bool RangeImage::in_view(const Eigen::Vector3f& centre, float radius_m) const {
   const float distance = centre.norm();
   if (distance <= radius_m) return true;
@@ -299,6 +305,39 @@ SightCounts RangeImage::compare(const SightSurface& surface,
     }
   }
   counts.solid = solid(says);
+  return counts;
+}
+
+OutlineCounts RangeImage::outline(const SightSurface& surface,
+                                  const Eigen::Isometry3d& T_here_surface,
+                                  float patch_m,
+                                  const SightTolerance& tolerance) const {
+  constexpr int kBeyond = 2;  // cells: the next may show the object's own edge
+  const std::vector<Predicted> predicted = render(surface, T_here_surface, patch_m);
+  const auto range_at = [&](const Place& place) {
+    if (place.row < 0 || place.row >= side_ || place.column < 0 || place.column >= side_) {
+      return -1.0F;
+    }
+    const std::uint32_t inner = inner_of_cell_[index_of(place)];
+    return inner == kOuter ? -1.0F : predicted[inner].range;
+  };
+  OutlineCounts counts;
+  for (std::size_t i = 0; i < inner_.size(); ++i) {
+    const float range = predicted[i].range;
+    if (range == kInfinity || predicted[i].back) continue;
+    const Cell& wide = widened_[inner_[i]];
+    const float slack = tolerance.metres + tolerance.share * range;
+    if (range < wide.nearest - slack || range > wide.furthest + slack) continue;
+    const Place place = place_at(inner_[i]);
+    for (const auto& [down, right] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const Place next{place.face, place.row + down, place.column + right};
+      const Place beyond{place.face, place.row + kBeyond * down, place.column + kBeyond * right};
+      if (range_at(next) != kInfinity || range_at(beyond) != kInfinity) continue;
+      const Cell& there = cells_[index_of(beyond)];
+      ++counts.measured;
+      if (range >= there.nearest - slack && range <= there.furthest + slack) ++counts.continued;
+    }
+  }
   return counts;
 }
 

@@ -29,6 +29,14 @@ struct SightCounts {
   SightCounts& operator+=(const SightCounts& other);
 };
 
+// The outline of a surface as the sensor should have seen it; counts of directions two cells beyond
+// it.
+struct OutlineCounts {
+  std::size_t measured = 0;   // the sensor measured there
+  std::size_t continued = 0;  // at the range of the outline: what is seen goes on beyond it
+  OutlineCounts& operator+=(const OutlineCounts& other);
+};
+
 // How far before or behind the measured range still counts as seen: fixed, and a share of the
 // range.
 struct SightTolerance {
@@ -56,6 +64,12 @@ class RangeImage {
                       const Eigen::Isometry3d& T_here_surface,
                       float patch_m,
                       const SightTolerance& tolerance) const;
+
+  // Renders `surface` in the same way and looks beyond the outline of what agrees.
+  OutlineCounts outline(const SightSurface& surface,
+                        const Eigen::Isometry3d& T_here_surface,
+                        float patch_m,
+                        const SightTolerance& tolerance) const;
 
   // True when the sensor measured something nearer than `p` (its own frame) in that direction and
   // all around it, by more than `slack_m`: the point cannot have been seen.

@@ -29,6 +29,13 @@ struct Evidence {
   // Of an object: the share of its outline at which the query's surface goes on flush beyond it, as
   // a larger thing's does.
   double outgrown = 0.0;
+  // Of an object's surface that must be seen.
+  double seen_points = 0.0;  // how many points that is
+  double closeness = 0.0;    // 0..1: how closely it lies on the surface measured
+  double structure = 0.0;    // 0..1: how evenly the normals of what lies on it are spread
+  double confirmed = 0.0;    // of its keypoints: a descriptor pair agrees
+  // Of an object's outline: the surface measured goes on beyond it at the same range.
+  double continued = 0.0;
   bool of_object = false;  // measured on an object in the query, not on the query in a place
   Eigen::Vector3d strength =
       Eigen::Vector3d::Zero();  // share of the normals' scatter along x, y, z, target frame

@@ -12,6 +12,7 @@ namespace landmarkdb {
 namespace {
 
 constexpr std::size_t kCoarsePoints = 400;
+constexpr std::size_t kCoarseLook = 1000;  // a third of which can be seen
 
 Eigen::Isometry3d turned(const Eigen::Isometry3d& T, bool inverse) {
   return inverse ? T.inverse() : T;
@@ -96,7 +97,7 @@ Assessed assess_coarse(const Meeting& meeting,
       meeting.target, points, normals, turned(T_entry_sensor, meeting.entry_is_source), options);
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
   if (meeting.entry_is_source) {
-    look_at_object(meeting, entry, query, assessed);
+    look_at_object(meeting, entry, query, kCoarseLook, assessed);
     return assessed;
   }
   Evidence& evidence = assessed.evidence;
@@ -125,14 +126,16 @@ void assess_fine(const Meeting& meeting,
                             turned(assessed.T_entry_sensor, meeting.entry_is_source),
                             options);
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
+  if (meeting.entry_is_source) refine_seen(meeting, query, assessed);
   Evidence& evidence = assessed.evidence;
   evidence = {};
   evidence.observability =
       observability(assessed.icp, extent_of(meeting.source), meeting.source.size());
   const VerifyOptions verify = verify_options(meeting);
   if (meeting.entry_is_source) {
-    look_at_object(meeting, entry, query, assessed);
+    look_at_object(meeting, entry, query, meeting.source.size(), assessed);
     evidence.outgrown = outgrown_share(meeting, entry, assessed.T_entry_sensor);
+    evidence.continued = continued_share(meeting, entry, assessed.T_entry_sensor);
     return;
   }
   measure_overlap(meeting.target,

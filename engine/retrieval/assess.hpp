@@ -55,6 +55,7 @@ struct Meeting {
   double tolerance_m = 0.0;
   // What the sensor saw, finer than the query's own where objects are asked for; empty: those.
   std::span<const RangeImage> ranges{};
+  const RangeNoise* noise = nullptr;  // of the target, where it is known
 };
 
 // A quick refinement with few points, and the sight of the entry's wide grid (of an object's whole

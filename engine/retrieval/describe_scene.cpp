@@ -78,6 +78,17 @@ FeatureOptions feature_options_of(const CloudScale& scale, const IndexOptions& o
       scale, options.kind, options.keypoints, options.voxel_m, options.radius_m);
 }
 
+// The front of a head from one frame has 44 at the usual spacing, a toy 500.
+constexpr std::size_t kFewOfObject = 150;
+
+Keypoints keypoints_of(const PreparedCloud& cloud,
+                       const FeatureOptions& features,
+                       EntryKind kind,
+                       const RunContext& context) {
+  return kind == EntryKind::kObject ? detect_enough(cloud, features, kFewOfObject, context)
+                                    : detect_keypoints(cloud, keypoint_options(features), context);
+}
+
 std::optional<Eigen::Vector3d> unit_up(const std::optional<Eigen::Vector3d>& up) {
   if (!up) return std::nullopt;
   if (!up->allFinite() || !(up->norm() > 0.0)) {
@@ -114,8 +125,7 @@ SceneRecord describe_scene(std::string name,
   merged = {};
   if (!record.prepared.normals_from_viewpoint) record.warnings.emplace_back("normals_unoriented");
 
-  const Keypoints keypoints =
-      detect_keypoints(record.prepared, keypoint_options(record.options), context);
+  const Keypoints keypoints = keypoints_of(record.prepared, record.options, options.kind, context);
   record.descriptors =
       describe_shot(record.prepared, keypoints, record.options.shot_radius_m, context);
   if (record.descriptors.size() < 4) {
@@ -145,8 +155,7 @@ IndexEstimate estimate_index(std::vector<Scan> scans,
                     {estimate.options.voxel_m, estimate.options.normal_radius_m},
                     context);
   estimate.points_used = prepared.size();
-  const Keypoints keypoints =
-      detect_keypoints(prepared, keypoint_options(estimate.options), context);
+  const Keypoints keypoints = keypoints_of(prepared, estimate.options, options.kind, context);
   estimate.keypoints = keypoints.size();
   const std::chrono::duration<double> so_far = std::chrono::steady_clock::now() - start;
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/features/detect_keypoints.hpp"
+
 namespace landmarkdb {
 
 namespace {
@@ -59,6 +61,18 @@ KeypointOptions keypoint_options(const FeatureOptions& options) {
   keypoints.spacing_m = options.keypoint_spacing_m;
   keypoints.structure_radius_m = kStructureRadiusVoxels * options.voxel_m;
   return keypoints;
+}
+
+Keypoints detect_enough(const PreparedCloud& cloud,
+                        const FeatureOptions& features,
+                        std::size_t few,
+                        const RunContext& context) {
+  KeypointOptions options = keypoint_options(features);
+  Keypoints keypoints = detect_keypoints(cloud, options, context);
+  if (keypoints.size() >= few) return keypoints;
+  constexpr double kDenser = 0.5;
+  options.spacing_m *= kDenser;
+  return detect_keypoints(cloud, options, context);
 }
 
 }  // namespace landmarkdb

@@ -21,4 +21,11 @@ FeatureOptions derive_feature_options(const CloudScale& scale,
 // The detector's settings for an entry, or for the query that is matched against it.
 KeypointOptions keypoint_options(const FeatureOptions& options);
 
+// Keypoints at the usual spacing, or where these are fewer than `few` at half of that: of what
+// shows little each keypoint is another chance.
+Keypoints detect_enough(const PreparedCloud& cloud,
+                        const FeatureOptions& features,
+                        std::size_t few,
+                        const RunContext& context);
+
 }  // namespace landmarkdb

@@ -144,7 +144,12 @@ Hypothesis make_hypothesis(const Judged& judged,
                     .contrast = pose.evidence.contrast,
                     .contradicted = pose.evidence.contradicted,
                     .observability = pose.evidence.observability,
-                    .outgrown = pose.evidence.outgrown};
+                    .outgrown = pose.evidence.outgrown,
+                    .seen_points = pose.evidence.seen_points,
+                    .closeness = pose.evidence.closeness,
+                    .structure = pose.evidence.structure,
+                    .confirmed = pose.evidence.confirmed,
+                    .continued = pose.evidence.continued};
   hypothesis.covariance = covariance_of(pose, entry, -input.query.cloud.origin);
   return hypothesis;
 }

@@ -53,19 +53,20 @@ std::vector<std::uint32_t> spread_by(std::span<const float> weights, std::size_t
   return indices;
 }
 
-// A query shows little, and each keypoint of it is another chance: where the usual spacing gives
-// few, it is halved.
 constexpr std::size_t kFewKeypoints = 400;
 
-Keypoints detect_enough(const PreparedCloud& cloud,
-                        const FeatureOptions& features,
-                        const RunContext& context) {
-  KeypointOptions options = keypoint_options(features);
-  Keypoints keypoints = detect_keypoints(cloud, options, context);
-  if (keypoints.size() >= kFewKeypoints) return keypoints;
-  constexpr double kDenser = 0.5;
-  options.spacing_m *= kDenser;
-  return detect_keypoints(cloud, options, context);
+// Keypoints and descriptors of the prepared cloud.
+void describe_view(const FeatureOptions& options,
+                   const RunContext& context,
+                   StageTimings& timings,
+                   QueryView& view) {
+  Keypoints keypoints;
+  {
+    const StageTimer timer(timings.keypoints);
+    keypoints = spread_keypoints(detect_enough(view.prepared, options, kFewKeypoints, context));
+  }
+  const StageTimer timer(timings.describe);
+  view.descriptors = describe_shot(view.prepared, keypoints, options.shot_radius_m, context);
 }
 
 }  // namespace
@@ -137,6 +138,26 @@ CleanQuery dense_part(const CleanQuery& query, double spacing_m, const RunContex
   return dense;
 }
 
+QueryView view_for_objects(const CleanQuery& query,
+                           const FeatureOptions& options,
+                           const RunContext& context,
+                           StageTimings& timings) {
+  QueryView view;
+  {
+    const StageTimer timer(timings.preprocess);
+    view.prepared = prepare_cloud(
+        query.cloud, query.counts, {options.voxel_m, options.normal_radius_m}, context);
+    view.noise =
+        measure_range_noise(view.prepared, options.normal_radius_m, context, SurfaceShape::kBent);
+    for (const std::uint32_t i : spread(view.prepared.size(), kSamplePoints)) {
+      view.sample_points.push_back(view.prepared.points[i]);
+      view.sample_normals.push_back(view.prepared.normals[i]);
+    }
+  }
+  describe_view(options, context, timings, view);
+  return view;
+}
+
 QueryView view_query(const CleanQuery& query,
                      const FeatureOptions& options,
                      std::uint64_t seed,
@@ -159,13 +180,7 @@ QueryView view_query(const CleanQuery& query,
   }
   view.planes = lay_out_planes(
       view.prepared.points, view.prepared.normals, plane_bin_m(options.voxel_m), kLayouts);
-  Keypoints keypoints;
-  {
-    const StageTimer timer(timings.keypoints);
-    keypoints = spread_keypoints(detect_enough(view.prepared, options, context));
-  }
-  const StageTimer timer(timings.describe);
-  view.descriptors = describe_shot(view.prepared, keypoints, options.shot_radius_m, context);
+  describe_view(options, context, timings, view);
   return view;
 }
 

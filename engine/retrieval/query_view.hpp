@@ -7,6 +7,7 @@
 
 #include "engine/base/run_context.hpp"
 #include "engine/base/stage_timings.hpp"
+#include "engine/features/range_noise.hpp"
 #include "engine/registration/plane_layout.hpp"
 #include "engine/registration/pose_score.hpp"
 #include "engine/registration/range_image.hpp"
@@ -44,8 +45,16 @@ struct QueryView {
   TestPoints test;                             // for testing proposals, most telling first
   std::vector<Eigen::Vector3f> sample_points;  // spread evenly, for refinement and overlap
   std::vector<Eigen::Vector3f> sample_normals;
+  RangeNoise noise;                 // of a view for objects, about bent surface
   std::vector<PlaneLayout> planes;  // what may be the frames of right angles it shows
 };
+
+// The same for objects that stand in the query: without what places alone are asked for (`test`,
+// `planes`).
+QueryView view_for_objects(const CleanQuery& query,
+                           const FeatureOptions& options,
+                           const RunContext& context,
+                           StageTimings& timings);
 
 QueryView view_query(const CleanQuery& query,
                      const FeatureOptions& options,

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/parallel.hpp"
+#include "engine/retrieval/half_turns.hpp"
 #include "engine/retrieval/verdict.hpp"
 
 namespace landmarkdb {
@@ -24,9 +25,6 @@ constexpr Quota kCoarse{.best = 80, .entries = 10, .each = 10};
 constexpr Quota kFine{.best = 24, .entries = 6, .each = 6};
 // Objects do not compete but where they stand: each has its own.
 constexpr Quota kCoarseObjects{.best = 80, .entries = 60, .each = 40};
-// The best candidates of the test are looked at closely whatever the coarse look says: before the
-// wide grid's cells a table or a rail close to the sensor stands in the way of half the view.
-constexpr std::size_t kVerifiedInAnyCase = 4;
 constexpr Quota kFineObjects{.best = 20, .entries = 20, .each = 6};
 
 // Those of `sorted` (best first) that the quota lets through, in their order.
@@ -72,10 +70,39 @@ std::vector<Assessed> assess_all_coarse(const SearchInput& input,
   std::stable_sort(assessed.begin(), assessed.end(), [](const Assessed& a, const Assessed& b) {
     return a.score > b.score;
   });
-  std::stable_partition(assessed.begin(), assessed.end(), [](const Assessed& a) {
-    return a.candidate < kVerifiedInAnyCase;
-  });
   return assessed;
+}
+
+// The best candidates of the test are looked at closely whatever the coarse look says: before the
+// wide grid's cells a table or a rail close to the sensor stands in the way of half the view.
+void put_best_tested_first(std::vector<Assessed>& assessed) {
+  constexpr std::size_t kInAnyCase = 4;
+  std::stable_partition(assessed.begin(), assessed.end(), [](const Assessed& pose) {
+    return pose.candidate < kInAnyCase;
+  });
+}
+
+// Half-turns of the best poses of each object, which proposals alone may miss, assessed as they are
+// and sorted in among them.
+void add_half_turns(const SearchInput& input,
+                    const MeetingOf& meeting_of,
+                    const SearchResult& result,
+                    std::vector<Assessed>& assessed) {
+  constexpr std::size_t kTurnedOfEach = 2;
+  std::map<std::size_t, std::size_t> taken;  // by entry
+  std::vector<Candidate> turned;
+  for (const Assessed& pose : assessed) {
+    if (++taken[pose.entry] > kTurnedOfEach) continue;
+    for (const Eigen::Isometry3d& turn :
+         half_turns(input.entries[pose.entry].record().prepared.points)) {
+      turned.push_back({pose.matches, turn * pose.T_entry_sensor, 0.0F, pose.correspondence});
+    }
+  }
+  const std::vector<Assessed> more = assess_all_coarse(input, turned, meeting_of, result);
+  assessed.insert(assessed.end(), more.begin(), more.end());
+  std::stable_sort(assessed.begin(), assessed.end(), [](const Assessed& a, const Assessed& b) {
+    return a.score > b.score;
+  });
 }
 
 // The best poses, one of each that refinement has carried to the same spot, and only so many of
@@ -107,12 +134,12 @@ std::vector<Assessed> best_distinct(const std::vector<Assessed>& assessed,
 
 }  // namespace
 
-const QueryView& ViewCache::view_of(const CleanQuery& query,
-                                    const FeatureOptions& options,
-                                    std::list<Made>& made) {
+const QueryView& ViewCache::add(const FeatureOptions& options,
+                                const std::function<QueryView()>& make,
+                                std::list<Made>& made) {
   made.push_back({options, {}});
   try {
-    made.back().view = view_query(query, options, seed_, context_, timings_);
+    made.back().view = make();
   } catch (const Error& error) {
     // Too small, too flat or too wide a cloud at this resolution; another entry's may suit it.
     if (error.code() != ErrorCode::kInvalidArgument) throw;
@@ -124,7 +151,8 @@ const QueryView& ViewCache::at(const FeatureOptions& options) {
   for (const Made& made : made_) {
     if (made.options == options) return made.view;
   }
-  return view_of(query_, options, made_);
+  return add(
+      options, [&] { return view_query(query_, options, seed_, context_, timings_); }, made_);
 }
 
 const QueryView& ViewCache::dense_at(const FeatureOptions& options) {
@@ -135,7 +163,8 @@ const QueryView& ViewCache::dense_at(const FeatureOptions& options) {
     const StageTimer timer(timings_.preprocess);
     return dense_part(query_, kMostSpacingVoxels * options.voxel_m, context_);
   }();
-  return view_of(dense, options, dense_);
+  return add(
+      options, [&] { return view_for_objects(dense, options, context_, timings_); }, dense_);
 }
 
 std::size_t ViewCache::keypoints() const {
@@ -207,6 +236,11 @@ void assess_candidates(const SearchInput& input,
   {
     const StageTimer timer(input.timings.icp);
     assessed = assess_all_coarse(input, candidates, meeting_of, result);
+    if (objects) {
+      add_half_turns(input, meeting_of, result, assessed);
+    } else {
+      put_best_tested_first(assessed);
+    }
   }
   const StageTimer timer(input.timings.verify);
   std::vector<Assessed> best = best_distinct(assessed, input.entries, input.query.centre);

@@ -45,9 +45,9 @@ class ViewCache {
   std::uint64_t seed_;
   const RunContext& context_;
   StageTimings& timings_;
-  const QueryView& view_of(const CleanQuery& query,
-                           const FeatureOptions& options,
-                           std::list<Made>& made);
+  const QueryView& add(const FeatureOptions& options,
+                       const std::function<QueryView()>& make,
+                       std::list<Made>& made);
   std::list<Made> made_;  // a list: references stay valid
   std::list<Made> dense_;
 };

@@ -1,11 +1,15 @@
 #include <algorithm>
 #include <memory>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
+#include "engine/base/parallel.hpp"
 #include "engine/matching/descriptor_index.hpp"
 #include "engine/registration/propose.hpp"
+#include "engine/retrieval/object_evidence.hpp"
 #include "engine/retrieval/rank_poses.hpp"
 #include "engine/retrieval/search.hpp"
 
@@ -17,7 +21,9 @@ constexpr std::size_t kNeighbours = 30;
 // Half of an object faces away and clutter hides more: a third of its points found is a good start.
 constexpr float kHopeless = 0.08F;
 // Distinct poses of an object that go on to refinement, where only what must be seen counts.
-constexpr std::size_t kKept = 60;
+constexpr std::size_t kKept = 40;
+// Of the proposals of an object, which has less room than a place.
+constexpr std::size_t kSettled = 800;
 // An object is seen over some degrees only, and its outline is what tells it: a third of a
 // degree, three pixels of a depth camera, 5 mm at a metre.
 constexpr double kSightStepRad = 0.3 * std::numbers::pi / 180.0;
@@ -27,6 +33,18 @@ struct QuerySurface {
   SurfaceGrid fine;
   SurfaceGrid wide;
 };
+
+QuerySurface make_surface(const PreparedCloud& cloud, const RunContext& context) {
+  std::optional<SurfaceGrid> fine;
+  std::optional<SurfaceGrid> wide;
+  parallel_chunks(2, context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (k == 0) fine.emplace(make_grid(cloud, context));
+      if (k == 1) wide.emplace(make_wide_grid(cloud));
+    }
+  });
+  return {std::move(*fine), std::move(*wide)};
+}
 
 // Looks each of the object's descriptors up among the query's: the object is whole, the query is
 // clutter.
@@ -61,6 +79,26 @@ Eigen::Vector3d centre_of(const PreparedCloud& cloud) {
   return sum / static_cast<double>(std::max<std::size_t>(cloud.size(), 1));
 }
 
+// What the descriptors say of the poses from `begin` on.
+void ask_descriptors(const SearchInput& input,
+                     std::size_t begin,
+                     const MeetingOf& meeting_of,
+                     SearchResult& result) {
+  const StageTimer timer(input.timings.verify);
+  const std::span poses = std::span(result.poses).subspan(begin);
+  parallel_chunks(poses.size(), input.context.threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      input.context.check("verify");
+      const EntryMatches& matches = result.matches[poses[i].matches];
+      poses[i].evidence.confirmed = confirmed_share(meeting_of(matches),
+                                                    input.entries[matches.entry],
+                                                    input.query,
+                                                    matches,
+                                                    poses[i].T_entry_sensor);
+    }
+  });
+}
+
 }  // namespace
 
 void search_objects(const SearchInput& input, SearchResult& result) {
@@ -81,8 +119,7 @@ void search_objects(const SearchInput& input, SearchResult& result) {
     auto& surface = surfaces[&view];
     if (!surface) {
       const StageTimer timer(input.timings.preprocess);
-      surface = std::make_unique<QuerySurface>(
-          QuerySurface{make_grid(view.prepared, input.context), make_wide_grid(view.prepared)});
+      surface = std::make_unique<QuerySurface>(make_surface(view.prepared, input.context));
     }
     result.matches.push_back(match_object(input, e, view));
     const StageTimer timer(input.timings.pose);
@@ -92,6 +129,7 @@ void search_objects(const SearchInput& input, SearchResult& result) {
     counts.proposals = proposals.size();
     SettleBestOptions settle;
     settle.hopeless = kHopeless;
+    settle.kept = kSettled;
     RankOptions rank;
     rank.hopeless = kHopeless;
     rank.kept_last = kKept;
@@ -119,18 +157,18 @@ void search_objects(const SearchInput& input, SearchResult& result) {
     return;
   }
   const std::vector<RangeImage> ranges = range_images(input.query.cloud, kSightStepRad);
-  assess_candidates(
-      input,
-      std::move(candidates),
-      [&](const EntryMatches& matches) {
-        const PreparedCloud& object = input.entries[matches.entry].record().prepared;
-        return Meeting{.target = surfaces.at(matches.view)->fine,
-                       .source = object.points,
-                       .source_normals = object.normals,
-                       .entry_is_source = true,
-                       .ranges = ranges};
-      },
-      result);
+  const auto meeting_of = [&](const EntryMatches& matches) {
+    const PreparedCloud& object = input.entries[matches.entry].record().prepared;
+    return Meeting{.target = surfaces.at(matches.view)->fine,
+                   .source = object.points,
+                   .source_normals = object.normals,
+                   .entry_is_source = true,
+                   .ranges = ranges,
+                   .noise = &matches.view->noise};
+  };
+  const std::size_t before = result.poses.size();
+  assess_candidates(input, std::move(candidates), meeting_of, result);
+  ask_descriptors(input, before, meeting_of, result);
 }
 
 }  // namespace landmarkdb

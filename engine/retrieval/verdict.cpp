@@ -122,9 +122,19 @@ bool is_rivalled(const Standing& best, const VerdictOptions& options) {
   return evidence.contrast < least;
 }
 
+// What is asked of an object's pose however sure it is.
+bool holds_as_object(const Standing& best, const VerdictOptions& options) {
+  const Assessed& pose = best.judged.pose;
+  return best.judged.confidence >= options.least_confidence_of_object &&
+         pose.score >= options.least_score_of_object &&
+         pose.evidence.continued <= options.most_continued &&
+         pose.evidence.contradicted <= options.most_contradicted_of_object;
+}
+
 bool is_taken(const Standing& best, const VerdictOptions& options) {
   if (is_rivalled(best, options) || best.judged.confidence < options.min_confidence) return false;
   const Assessed& pose = best.judged.pose;
+  if (pose.evidence.of_object && !holds_as_object(best, options)) return false;
   if (is_sure(best, options)) return true;
   return pose.evidence.of_object
              ? confidence_alone(pose.evidence, pose.score) >= options.least_alone

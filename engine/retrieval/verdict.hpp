@@ -44,6 +44,13 @@ struct VerdictOptions {
   // Below this the surface leaves a freedom open (a slide along a wall, a turn of a bottle), and
   // any pose along it is a rival.
   double least_observability = 0.01;
+  // An object that is 8 % longer than the one asked for looks much like it, so that more is asked
+  // of an answer than the half: this confidence, this score, and that no more than these shares of
+  // the outline and of the view speak against it.
+  double least_confidence_of_object = 0.7;
+  double least_score_of_object = 0.78;
+  double most_continued = 0.25;
+  double most_contradicted_of_object = 0.25;
   // An object's pose, below that confidence, that is not this believable by its own evidence
   // answers nothing, however far the others are behind. The threshold of the log-odds -1: 1 / (1 +
   // e).

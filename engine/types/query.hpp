@@ -83,6 +83,13 @@ struct Fit {
   double contradicted = 0.0;  // of the directions predicted: amid others that are contradicted too
   double observability = 0.0;  // 0..1: weakest of the six freedoms against the strongest
   double outgrown = 0.0;       // of an object's outline: the surface seen goes on flush beyond it
+  // Of an object's surface that must be seen: how many points, how closely it lies on the surface
+  // measured and how evenly the normals there are spread (0..1).
+  double seen_points = 0.0;
+  double closeness = 0.0;
+  double structure = 0.0;
+  double confirmed = 0.0;  // of its keypoints that must be seen: a descriptor pair agrees
+  double continued = 0.0;  // of its outline: the surface measured goes on beyond at the same range
 };
 
 // T_scene_sensor = T_icp * T_scene_landmark * T_landmark_sensor, exactly.

@@ -126,5 +126,23 @@ TEST(FlattenRangeNoise, GivesTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(one.normals, three.normals);
 }
 
+// A ball of four normals' radii without noise, which a plane does not fit.
+TEST(MeasureRangeNoise, DoesNotTakeABendForNoiseWhereSurfaceMayBend) {
+  Random random(3);
+  PointCloud cloud;
+  cloud.viewpoints.emplace_back(0.0F, 0.0F, 0.0F);
+  for (int i = 0; i < 40'000; ++i) {
+    const Eigen::Vector3d direction =
+        Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    const Eigen::Vector3d p = Eigen::Vector3d(0, 0, 2) + 4.0 * kRadius_m * direction;
+    if (direction.dot(p) < 0.0) cloud.points.push_back(p.cast<float>());
+  }
+  const PreparedCloud ball = prepared(std::move(cloud));
+  const float flat = measure_range_noise(ball, kRadius_m, {}).at(1.6F);
+  const float bent = measure_range_noise(ball, kRadius_m, {}, SurfaceShape::kBent).at(1.6F);
+  EXPECT_GT(flat, 0.05 * kVoxel_m);
+  EXPECT_LT(bent, 0.3F * flat);
+}
+
 }  // namespace
 }  // namespace landmarkdb

@@ -116,6 +116,24 @@ TEST(RangeImage, TakesWhatLiesBehindTheWallForHidden) {
   EXPECT_EQ(counts.agree, 0U);
 }
 
+TEST(RangeImage, TellsAnOutlineOfItsOwnFromOneWithinALargerSurface) {
+  const Points surface = patch({-0.3F, -0.3F}, {0.3F, 0.3F}, 2.0F);
+  const auto continued = [&](const Points& measured) {
+    const RangeImage image(measured, Eigen::Vector3f::Zero(), kStep);
+    const OutlineCounts counts =
+        image.outline({surface}, Eigen::Isometry3d::Identity(), kPatch_m, kTolerance);
+    EXPECT_GT(counts.measured, 40U);
+    return static_cast<double>(counts.continued) / static_cast<double>(counts.measured);
+  };
+  EXPECT_EQ(continued(wall(2.0F)), 1.0);
+  Points before_a_wall;
+  for (const Eigen::Vector3f& p : wall(2.0F)) {
+    const bool on = p.head<2>().cwiseAbs().maxCoeff() <= 0.3F;
+    before_a_wall.push_back(on ? p : Eigen::Vector3f(1.5F * p));
+  }
+  EXPECT_LT(continued(before_a_wall), 0.05);
+}
+
 TEST(RangeImage, LetsTheNearerOfTwoSurfacesDecide) {
   const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
   Points both = patch({-2, -2}, {2, 2}, 4.0F);

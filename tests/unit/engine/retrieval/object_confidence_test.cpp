@@ -13,7 +13,8 @@ Evidence convincing() {
   evidence.overlap = 0.95;
   evidence.explained = 1.0;
   evidence.observability = 0.1;
-  evidence.agreeing = 90.0;
+  evidence.structure = 0.3;
+  evidence.confirmed = 0.4;
   return evidence;
 }
 
@@ -28,16 +29,17 @@ TEST(ObjectLogOdds, RisesWithWhatSpeaksForAPoseAndFallsWithWhatSpeaksAgainst) {
     other.*figure = value;
     return object_log_odds(other, 0.85, 0.3);
   };
-  EXPECT_LT(less(&Evidence::agreeing, 5.0), base);
-  EXPECT_LT(less(&Evidence::contradicted, 0.2), base);
+  EXPECT_LT(less(&Evidence::structure, 0.05), base);
+  EXPECT_LT(less(&Evidence::confirmed, 0.1), base);
   EXPECT_LT(less(&Evidence::outgrown, 0.2), base);
+  EXPECT_LT(less(&Evidence::continued, 0.2), base);
 }
 
 TEST(ObjectLogOdds, AreWhatTheConfidenceOfAnObjectIsMadeOf) {
   const Evidence evidence = convincing();
-  EXPECT_GT(confidence_of(evidence, 0.85, 0.3), 0.5);
-  EXPECT_LT(confidence_of(evidence, 0.85, 0.0), 0.5);
-  EXPECT_GT(confidence_alone(evidence, 0.85), confidence_of(evidence, 0.85, 0.0));
+  EXPECT_GT(confidence_of(evidence, 0.79, 0.3), 0.5);
+  EXPECT_LT(confidence_of(evidence, 0.79, 0.0), 0.5);
+  EXPECT_GT(confidence_alone(evidence, 0.79), confidence_of(evidence, 0.79, 0.0));
 }
 
 }  // namespace

@@ -71,6 +71,17 @@ TEST(ViewQuery, DescribesTheCloudAtTheResolutionAsked) {
   EXPECT_GT(timings.describe.count(), 0.0);
 }
 
+TEST(ViewForObjects, LeavesOutWhatPlacesAloneAreAskedFor) {
+  const testing::SyntheticScene room = testing::small_room(2);
+  const CleanQuery query = clean_query(testing::frame_in(room, 1).cloud);
+  StageTimings timings;
+  const QueryView view = view_for_objects(query, kOptions, {}, timings);
+  EXPECT_GT(view.descriptors.size(), 50U);
+  EXPECT_FALSE(view.noise.sigma_m.empty());
+  EXPECT_EQ(view.test.size(), 0U);
+  EXPECT_TRUE(view.planes.empty());
+}
+
 TEST(ViewQuery, RefusesACloudTooSmallOrTooThinForTheResolution) {
   PointCloud speck, line;
   for (int i = 0; i < 100; ++i) {
