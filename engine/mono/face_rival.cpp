@@ -35,7 +35,7 @@ using Motion = std::vector<std::pair<std::uint32_t, Eigen::Vector3d>>;
 class FaceSolver {
  public:
   FaceSolver(const SearchModel& model, const Camera& camera, const RigidPose& pose)
-      : model_(model), camera_(camera), pose_(pose) {
+      : model_(model), camera_(camera), pose_(pose), of_edges_(model.model().edges.size()) {
     const MonoModel& m = model.model();
     for (const auto& face : m.faces) normals_.push_back(normal_of(m, face));
     const double focal = 0.5 * (std::abs(camera.fx) + std::abs(camera.fy));
@@ -155,10 +155,13 @@ class FaceSolver {
     return {{on.front(), normals_[on.front()]}};
   }
 
-  Motion motion_of_edge(std::uint32_t line) const {
+  const Motion& motion_of_edge(std::uint32_t line) {
+    std::optional<Motion>& known = of_edges_[line];
+    if (known) return *known;
     const auto& [a, b] = model_.model().edges[line];
-    return motion_where(
-        faces_with([&](const Faces& face) { return has(face, a) && has(face, b); }));
+    known =
+        motion_where(faces_with([&](const Faces& face) { return has(face, a) && has(face, b); }));
+    return *known;
   }
 
   Eigen::Vector3d moved(const Eigen::Vector3d& place, const Motion& motion) const {
@@ -234,7 +237,7 @@ class FaceSolver {
   }
 
   bool add_edge(const SeenEdge& edge) {
-    const Motion motion = motion_of_edge(edge.sample.line);
+    const Motion& motion = motion_of_edge(edge.sample.line);
     Slopes slope;
     if (!slopes(edge.sample.xyz, motion, slope)) return false;
     const double r = edge.sample.normal.dot(slope.uv - edge.uv);
@@ -250,7 +253,8 @@ class FaceSolver {
   const SearchModel& model_;
   const Camera& camera_;
   RigidPose pose_;
-  std::vector<Eigen::Vector3d> normals_;  // of the faces
+  std::vector<Eigen::Vector3d> normals_;         // of the faces
+  std::vector<std::optional<Motion>> of_edges_;  // as far as they were asked for
   double tolerance_px_ = 0.0;
   Eigen::VectorXd offsets_, before_, g_, row_;
   Eigen::MatrixXd H_;

@@ -423,6 +423,7 @@ void PoseCheck::judge_shape(MonoCandidate& candidate) const {
   }
   candidate.shape_odds =
       stretched_rival(search, camera_, candidate.pose, matched_points(candidate), along).log10_odds;
+  if (edges_.empty()) return;  // by points alone faces have no say
   std::vector<SeenCorner> corners;
   for (const Match& match : candidate.matches)
     corners.push_back({match.model, image_[match.image].uv, image_[match.image].sigma_px});
