@@ -112,8 +112,11 @@ json rows_of(const std::vector<PictureHypothesis>& told) {
                     {"visible", e.visible},
                     {"rms_px", e.rms_px},
                     {"edge_share", e.edge_share},
-                    {"whole", e.edges.whole},
                     {"overrun", e.edges.overrun},
+                    {"supported", e.edges.supported},
+                    {"lined", e.edges.lined},
+                    {"bend", e.edges.bend},
+                    {"face_odds", e.face_odds},
                     {"shape_odds", e.shape_odds}});
   }
   return rows;

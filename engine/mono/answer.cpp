@@ -53,6 +53,7 @@ MonoHypothesis told(const SearchModel& search,
   hypothesis.edge_share = candidate.edge_share;
   hypothesis.edges = candidate.edges;
   hypothesis.shape_odds = candidate.shape_odds;
+  hypothesis.face_odds = candidate.face_odds;
   hypothesis.symmetry = search.model().symmetry_class;
   hypothesis.ambiguous = candidate.ambiguous;
   for (const Match& match : candidate.matches) {

@@ -24,11 +24,13 @@ bool is_beyond_doubt(double log10_nfa, double edge_share) {
 
 bool CandidatePool::is_known(std::uint32_t model, const RigidPose& pose) const {
   for (const MonoCandidate& known : candidates_) {
-    if (known.model == model && same_but_for_symmetry(models_[model],
-                                                      known.pose,
-                                                      pose,
-                                                      kSameAngle_rad,
-                                                      kSameDistance * known.pose.t.norm())) {
+    // One that holds only with things unlike their models may be on its way to a better one.
+    if (known.model == model && !known.unlike &&
+        same_but_for_symmetry(models_[model],
+                              known.pose,
+                              pose,
+                              kSameAngle_rad,
+                              kSameDistance * known.pose.t.norm())) {
       return true;
     }
   }

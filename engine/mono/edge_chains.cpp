@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <limits>
 
 namespace landmarkdb {
@@ -11,31 +13,34 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr float kLeastCosine = 0.5F;  // 60 degrees
 constexpr std::int32_t kReach = 2;    // pixels
 
-struct Wish {
-  std::uint32_t ahead = kNone, behind = kNone;
-  float ahead_cost = std::numeric_limits<float>::max();
-  float behind_cost = std::numeric_limits<float>::max();
-};
+// A link that a point wishes for: its cost in the upper half, the other point in the lower, so that
+// the cheaper one is the smaller number (costs are not negative: their bits are in their order).
+using Wish = std::uint64_t;
+constexpr Wish kNoWish = std::numeric_limits<Wish>::max();
+struct Wishes {
+  std::array<Wish, 2> ways{kNoWish, kNoWish};  // ahead, behind
 
-// What point p thinks of a link to q, which lies `step` away.
-void consider(const EdgePoint& p, const Eigen::Vector2f& step, std::uint32_t q, Wish& wish) {
+  std::uint32_t ahead() const { return static_cast<std::uint32_t>(ways[0]); }
+  std::uint32_t behind() const { return static_cast<std::uint32_t>(ways[1]); }
+};
+static_assert(static_cast<std::uint32_t>(kNoWish) == kNone);
+
+// What point p thinks of a link to q, which lies `step` away. No branches: which way a point lies
+// is as good as chance.
+void consider(const EdgePoint& p, const Eigen::Vector2f& step, std::uint32_t q, Wishes& wishes) {
   const float along = -p.normal.y() * step.x() + p.normal.x() * step.y();
   const float aside = p.normal.dot(step);
   const float cost = along * along + 2.0F * aside * aside;
   constexpr float kLeastStep = 0.2F;  // below, the two are side by side
-  if (along > kLeastStep && cost < wish.ahead_cost) {
-    wish.ahead = q;
-    wish.ahead_cost = cost;
-  } else if (along < -kLeastStep && cost < wish.behind_cost) {
-    wish.behind = q;
-    wish.behind_cost = cost;
-  }
+  const Wish wish = (Wish{std::bit_cast<std::uint32_t>(cost)} << 32U) | q;
+  Wish& known = wishes.ways[along < 0.0F ? 1 : 0];
+  known = std::abs(along) > kLeastStep ? std::min(known, wish) : known;
 }
 
 void consider_both(const EdgeMap& map,
                    std::uint32_t i,
                    std::uint32_t j,
-                   std::vector<Wish>& wishes) {
+                   std::vector<Wishes>& wishes) {
   const EdgePoint &p = map.points[i], &q = map.points[j];
   if (p.normal.dot(q.normal) < kLeastCosine) return;
   const Eigen::Vector2f step = q.uv - p.uv;
@@ -45,24 +50,25 @@ void consider_both(const EdgeMap& map,
 
 // The best link of every point either way. Every pair is looked at once, from the upper or left
 // one; each row below has a cursor that only moves on, so no map of the image is needed.
-std::vector<Wish> find_wishes(const EdgeMap& map, const RunContext& run) {
-  std::vector<Wish> wishes(map.points.size());
+std::vector<Wishes> find_wishes(const EdgeMap& map, const RunContext& run) {
+  std::vector<Wishes> wishes(map.points.size());
   const std::size_t height = map.row_starts.size() - 1;
   for (std::size_t y = 0; y < height; ++y) {
     constexpr std::size_t kRowsBetweenChecks = 64;
     if (y % kRowsBetweenChecks == 0) run.check("features");
-    std::array<std::uint32_t, kReach> cursors{};
-    for (std::size_t below = 1; below <= kReach && y + below < height; ++below) {
-      cursors[below - 1] = map.row_starts[y + below];
+    std::array<std::uint32_t, kReach> cursors{}, ends{};
+    for (std::size_t below = 0; below < kReach && y + below + 1 < height; ++below) {
+      cursors[below] = map.row_starts[y + below + 1];
+      ends[below] = map.row_starts[y + below + 2];
     }
     for (std::uint32_t i = map.row_starts[y]; i < map.row_starts[y + 1]; ++i) {
       const std::int32_t first = map.columns[i] - kReach, last = map.columns[i] + kReach;
       for (std::uint32_t j = i + 1; j < map.row_starts[y + 1] && map.columns[j] <= last; ++j) {
         consider_both(map, i, j, wishes);
       }
-      for (std::size_t below = 1; below <= kReach && y + below < height; ++below) {
-        const std::uint32_t end = map.row_starts[y + below + 1];
-        std::uint32_t& at = cursors[below - 1];
+      for (std::size_t below = 0; below < kReach; ++below) {
+        const std::uint32_t end = ends[below];
+        std::uint32_t& at = cursors[below];
         while (at < end && map.columns[at] < first) ++at;
         for (std::uint32_t j = at; j < end && map.columns[j] <= last; ++j) {
           consider_both(map, i, j, wishes);
@@ -77,7 +83,7 @@ struct Links {
   std::vector<std::uint32_t> next, previous;
 };
 
-Links link(const std::vector<Wish>& wishes) {
+Links link(const std::vector<Wishes>& wishes) {
   Links links{std::vector<std::uint32_t>(wishes.size(), kNone),
               std::vector<std::uint32_t>(wishes.size(), kNone)};
   const auto join = [&](std::uint32_t from, std::uint32_t to) {
@@ -86,15 +92,15 @@ Links link(const std::vector<Wish>& wishes) {
   };
   // First where both want each other, then what is still free on both sides.
   for (std::uint32_t i = 0; i < wishes.size(); ++i) {
-    const std::uint32_t to = wishes[i].ahead;
-    if (to != kNone && wishes[to].behind == i) join(i, to);
+    const std::uint32_t to = wishes[i].ahead();
+    if (to != kNone && wishes[to].behind() == i) join(i, to);
   }
   for (std::uint32_t i = 0; i < wishes.size(); ++i) {
-    const std::uint32_t to = wishes[i].ahead;
+    const std::uint32_t to = wishes[i].ahead();
     if (to != kNone && links.next[i] == kNone && links.previous[to] == kNone) join(i, to);
   }
   for (std::uint32_t i = 0; i < wishes.size(); ++i) {
-    const std::uint32_t from = wishes[i].behind;
+    const std::uint32_t from = wishes[i].behind();
     if (from != kNone && links.previous[i] == kNone && links.next[from] == kNone) join(from, i);
   }
   return links;

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/mono/edge_consensus.hpp"
+
 namespace landmarkdb {
 namespace {
 
@@ -40,9 +42,8 @@ class EdgeJudge {
   EdgeEvidence judge() {
     for (const auto& [a, b] : model_.model().edges) judge_edge(a, b);
     EdgeEvidence result;
-    const auto share = [](double part, double all) { return all > 0.0 ? part / all : 0.0; };
-    result.whole = share(whole_, edges_);
-    result.overrun = share(overrun_, ends_);
+    if (ends_ > 0.0) result.overrun = overrun_ / ends_;
+    judge_lines(model_, camera_, pose_, grid_, scale_, result);
     return result;
   }
 
@@ -92,10 +93,7 @@ class EdgeJudge {
       if (side != 0) ++of_side[side > 0 ? 1 : 0];
     }
     if (sides.size() < kFewestSamples) return;
-    const std::size_t coherent = std::max(of_side[0], of_side[1]);
     const int side = of_side[1] >= of_side[0] ? 1 : -1;
-    edges_ += 1.0;
-    if (4 * coherent >= 3 * sides.size()) whole_ += 1.0;
     const auto runs_to = [&](auto begin) {  // the three samples next to an end
       return std::all_of(begin, begin + kFewestSamples, [&](int s) { return s == side; });
     };
@@ -133,7 +131,7 @@ class EdgeJudge {
   double scale_;
   PlaceSight sight_;
   std::vector<std::optional<Eigen::Vector2d>> corners_;  // of the model's points, in the image
-  double edges_ = 0.0, whole_ = 0.0, ends_ = 0.0, overrun_ = 0.0;
+  double ends_ = 0.0, overrun_ = 0.0;
 };
 
 }  // namespace

@@ -20,6 +20,7 @@ bool add_sample(const PlaceSight& sight,
                 const RigidPose& pose,
                 const Eigen::Vector3d& place,
                 const Eigen::Vector3d& along,
+                std::size_t line,
                 std::vector<EdgeSample>& samples) {
   const Eigen::Vector3d X = pose * place;
   if (!(X.z() > 0.0)) return false;
@@ -35,7 +36,10 @@ bool add_sample(const PlaceSight& sight,
   const Eigen::Vector2d tangent = lens.duv_dray * (d.head<2>() - ray * d.z());
   const double length = tangent.norm();
   if (!(length > 0.0)) return false;
-  samples.push_back({place, lens.uv, Eigen::Vector2d(-tangent.y(), tangent.x()) / length});
+  samples.push_back({place,
+                     lens.uv,
+                     Eigen::Vector2d(-tangent.y(), tangent.x()) / length,
+                     static_cast<std::uint32_t>(line)});
   return true;
 }
 
@@ -44,6 +48,7 @@ void add_circle(const PlaceSight& sight,
                 const Camera& camera,
                 const RigidPose& pose,
                 const Eigen::Vector3d& eye,
+                std::size_t line,
                 std::vector<EdgeSample>& samples) {
   const Eigen::Vector3d n = circle.normal.normalized();
   const Eigen::Vector3d u = n.unitOrthogonal(), v = n.cross(u);
@@ -54,7 +59,7 @@ void add_circle(const PlaceSight& sight,
     // A rim lies on a face: it is looked at from a little above it.
     const Eigen::Vector3d place = circle.center + circle.radius_m * out;
     if (std::abs(n.dot((eye - place).normalized())) < kGrazing) continue;
-    add_sample(sight, camera, pose, place, along, samples);
+    add_sample(sight, camera, pose, place, along, line, samples);
   }
 }
 
@@ -85,33 +90,36 @@ EdgeGrid::EdgeGrid(const ImageFeatures& features) {
   density_ = static_cast<double>(edges_.size()) / (double{1} * features.width * features.height);
 }
 
-const EdgePoint* EdgeGrid::nearest(const Eigen::Vector2d& uv,
-                                   const Eigen::Vector2d& normal,
-                                   double reach_px,
-                                   double min_cosine) const {
-  if (edges_.empty()) return nullptr;
+std::optional<EdgeGrid::Cells> EdgeGrid::cells_near(const Eigen::Vector2d& uv,
+                                                    double reach_px) const {
+  if (edges_.empty()) return std::nullopt;
   const double x0 = (uv.x() - reach_px) / kCell_px, x1 = (uv.x() + reach_px) / kCell_px;
   const double y0 = (uv.y() - reach_px) / kCell_px, y1 = (uv.y() + reach_px) / kCell_px;
   if (!(x1 >= 0.0) || !(y1 >= 0.0) || !(x0 < static_cast<double>(columns_)) ||
       !(y0 < static_cast<double>(rows_))) {
-    return nullptr;
+    return std::nullopt;
   }
   const auto low = [](double c) { return static_cast<std::size_t>(std::max(0.0, c)); };
-  const std::size_t last_x = std::min(columns_ - 1, low(x1)), last_y = std::min(rows_ - 1, low(y1));
+  return Cells{low(x0), std::min(columns_ - 1, low(x1)), low(y0), std::min(rows_ - 1, low(y1))};
+}
+
+const EdgePoint* EdgeGrid::nearest(const Eigen::Vector2d& uv,
+                                   const Eigen::Vector2d& normal,
+                                   double reach_px,
+                                   double min_cosine) const {
+  const std::optional<Cells> cells = cells_near(uv, reach_px);
+  if (!cells) return nullptr;
   const EdgePoint* best = nullptr;
   double least = reach_px;
-  constexpr double kBeside_px =
-      1.5;  // of the line along the normal: edge points stand a pixel apart
-  for (std::size_t y = low(y0); y <= last_y; ++y) {
-    for (std::uint32_t i = starts_[y * columns_ + low(x0)]; i < starts_[y * columns_ + last_x + 1];
-         ++i) {
-      const Eigen::Vector2d d = edges_[i].uv.cast<double>() - uv;
+  for (std::size_t y = cells->first_y; y <= cells->last_y; ++y) {
+    for (const EdgePoint& edge : row_of(*cells, y)) {
+      const Eigen::Vector2d d = edge.uv.cast<double>() - uv;
       const double along = std::abs(d.dot(normal));
       if (!(along < least) || std::abs(d.x() * normal.y() - d.y() * normal.x()) > kBeside_px)
         continue;
-      if (std::abs(edges_[i].normal.cast<double>().dot(normal)) < min_cosine) continue;
+      if (std::abs(edge.normal.cast<double>().dot(normal)) < min_cosine) continue;
       least = along;
-      best = &edges_[i];
+      best = &edge;
     }
   }
   return best;
@@ -130,7 +138,8 @@ std::vector<EdgeSample> visible_edges(const SearchModel& model,
   const std::size_t lines = m.edges.size() + m.circles.size();
   if (lines == 0) return samples;
   const std::size_t share = std::max<std::size_t>(2, most / lines);
-  for (const auto& [a, b] : m.edges) {
+  for (std::size_t line = 0; line < m.edges.size(); ++line) {
+    const auto& [a, b] = m.edges[line];
     const Eigen::Vector3d& from = m.points[a].xyz;
     const Eigen::Vector3d along = m.points[b].xyz - from;
     const double depth = (pose * (from + 0.5 * along)).z();
@@ -140,10 +149,11 @@ std::vector<EdgeSample> visible_edges(const SearchModel& model,
         static_cast<std::size_t>(std::clamp(steps, 2.0, static_cast<double>(share)));
     for (std::size_t i = 0; i < n; ++i) {
       const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
-      add_sample(sight, camera, pose, from + at * along, along, samples);
+      add_sample(sight, camera, pose, from + at * along, along, line, samples);
     }
   }
-  for (const ModelCircle& circle : m.circles) add_circle(sight, circle, camera, pose, eye, samples);
+  for (const ModelCircle& circle : m.circles)
+    add_circle(sight, circle, camera, pose, eye, m.edges.size(), samples);
   return samples;
 }
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 
 #include "engine/mono/gradient_rows.hpp"
 
@@ -21,20 +23,44 @@ float top_of_parabola(float before, float top, float after) {
 
 float length_of(std::int32_t squared) { return std::sqrt(static_cast<float>(squared)); }
 
-void append_point(EdgeMap& map, const GradientRows& rows, std::int32_t x, std::uint32_t y) {
-  const std::size_t at = static_cast<std::size_t>(x) + kRowMargin;
-  const float gx = rows.gx[at], gy = rows.gy[at];
-  const float length = length_of(rows.squared[at]);
-  EdgePoint point{{static_cast<float>(x), static_cast<float>(y)}, {gx / length, gy / length}};
-  if (std::abs(gx) > std::abs(gy)) {
-    point.uv.x() +=
-        top_of_parabola(length_of(rows.squared[at - 1]), length, length_of(rows.squared[at + 1]));
-  } else {
-    point.uv.y() += top_of_parabola(length_of(rows.above[at]), length, length_of(rows.below[at]));
+// The edge points of row y, at the pixels `columns`.
+void append_points(EdgeMap& map,
+                   const GradientRows& rows,
+                   std::span<const std::int32_t> columns,
+                   std::uint32_t y) {
+  const float contrast = static_cast<float>(rows.contrast_scale * kLevelsPerUnit);
+  std::size_t next = map.points.size();
+  map.points.resize(next + columns.size());
+  map.contrasts.resize(next + columns.size());
+  map.columns.insert(map.columns.end(), columns.begin(), columns.end());
+  for (const std::int32_t x : columns) {
+    const std::size_t at = static_cast<std::size_t>(x) + kRowMargin;
+    const float gx = rows.gx[at], gy = rows.gy[at];
+    const float length = length_of(rows.squared[at]);
+    const bool in_row = std::abs(gx) > std::abs(gy);
+    const std::int32_t before = in_row ? rows.squared[at - 1] : rows.above[at];
+    const std::int32_t after = in_row ? rows.squared[at + 1] : rows.below[at];
+    const float offset = top_of_parabola(length_of(before), length, length_of(after));
+    map.points[next] = {{static_cast<float>(x) + (in_row ? offset : 0.0F),
+                         static_cast<float>(y) + (in_row ? 0.0F : offset)},
+                        {gx / length, gy / length}};
+    map.contrasts[next++] = length * contrast;
   }
-  map.points.push_back(point);
-  map.columns.push_back(x);
-  map.contrasts.push_back(length * static_cast<float>(rows.contrast_scale * kLevelsPerUnit));
+}
+
+// Where flags are 1. They are looked at eight at a time: those past `width` are 0, eight of them.
+void find_flagged(std::span<const std::uint8_t> flags,
+                  std::uint32_t width,
+                  std::vector<std::int32_t>& columns) {
+  columns.clear();
+  for (std::uint32_t x = 0; x < width; x += sizeof(std::uint64_t)) {
+    std::uint64_t eight = 0;
+    std::memcpy(&eight, flags.data() + x, sizeof eight);
+    if (eight == 0) continue;
+    if constexpr (std::endian::native == std::endian::big) eight = __builtin_bswap64(eight);
+    for (; eight != 0; eight &= eight - 1)
+      columns.push_back(static_cast<std::int32_t>(x) + std::countr_zero(eight) / 8);
+  }
 }
 
 // Keeps the points at or above a contrast. `rows_done` rows have their start.
@@ -117,6 +143,7 @@ EdgeMap find_edge_points(const GreyImage& image,
   GradientFilter filter(image, options.smooth);
   double floor = map.low_contrast;
   std::vector<std::uint8_t> flags(filter.row_size() + sizeof(std::uint64_t), 0);
+  std::vector<std::int32_t> columns;
   for (std::uint32_t y = 0; y < image.height; ++y) {
     constexpr std::uint32_t kRowsBetweenChecks = 64;
     if (y % kRowsBetweenChecks == 0) run.check("features");
@@ -125,15 +152,8 @@ EdgeMap find_edge_points(const GreyImage& image,
     constexpr double kSteepest = 40'000.0;  // no gradient is longer
     const double least = std::min(floor * kGradientPerLevel / rows.contrast_scale, kSteepest);
     mark_maxima(rows, image.width, static_cast<std::int32_t>(least * least), flags.data());
-    for (std::uint32_t x = 0; x < image.width; x += sizeof(std::uint64_t)) {
-      std::uint64_t eight = 0;
-      std::memcpy(&eight, flags.data() + x, sizeof eight);
-      if (eight == 0) continue;
-      const std::uint32_t end = std::min<std::uint32_t>(image.width, x + sizeof eight);
-      for (std::uint32_t i = x; i < end; ++i) {
-        if (flags[i] != 0) append_point(map, rows, static_cast<std::int32_t>(i), y);
-      }
-    }
+    find_flagged(flags, image.width, columns);
+    append_points(map, rows, columns, y);
     if (map.points.size() > options.max_points) {
       floor = median_of(map.contrasts);
       drop_below(map, std::nextafter(floor, 2.0 * floor), std::size_t{y} + 1);

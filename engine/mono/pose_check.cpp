@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/mono/face_rival.hpp"
 #include "engine/mono/point_pose.hpp"
 #include "engine/mono/refine_pose.hpp"
 #include "engine/mono/stretched_rival.hpp"
@@ -16,6 +17,7 @@ namespace {
 constexpr double kLook_px = 8.0;
 constexpr std::array<double, 3> kRounds_px{5.0, 3.5, 3.5};
 constexpr double kFinal_px = 3.5;
+constexpr double kUnlike = 0.015;  // of the diameter: how far a thing's corners are off its model's
 constexpr std::size_t kLeastHits = 5;
 constexpr double kLeastShare = 0.35;        // of the visible points
 constexpr double kHuber = 2.0;              // sigmas
@@ -175,6 +177,17 @@ std::span<const Match> PoseCheck::grow(std::uint32_t model, RigidPose& pose) {
   return {};
 }
 
+// A tolerance of the image and that of the model, as it is seen at the pose.
+double PoseCheck::reach_px(std::uint32_t model,
+                           const RigidPose& pose,
+                           double image_px,
+                           double unlike) const {
+  const SearchModel& search = models_[model];
+  const double depth = std::max(options_.min_depth_m, (pose * search.center).z());
+  const double unlike_px = unlike * image_.focal_px() * search.model().diameter_m / depth;
+  return std::hypot(image_px * options_.scale, unlike_px);
+}
+
 bool PoseCheck::refine(std::uint32_t model, RigidPose& pose, MonoCandidate* result) const {
   std::vector<PosePoint> points;
   points.reserve(matches_.size());
@@ -197,6 +210,17 @@ bool PoseCheck::refine(std::uint32_t model, RigidPose& pose, MonoCandidate* resu
 std::optional<MonoCandidate> PoseCheck::settle(std::uint32_t model,
                                                const RigidPose& start,
                                                std::span<const Match> first) {
+  std::optional<MonoCandidate> exact = settle_within(model, start, first, 0.0);
+  if (edges_.empty() || (exact && exact->matches.size() == exact->visible)) return exact;
+  std::optional<MonoCandidate> unlike = settle_within(model, start, first, kUnlike);
+  if (!exact || (unlike && unlike->rank() < exact->rank())) return unlike;
+  return exact;
+}
+
+std::optional<MonoCandidate> PoseCheck::settle_within(std::uint32_t model,
+                                                      const RigidPose& start,
+                                                      std::span<const Match> first,
+                                                      double unlike) {
   const SearchModel& search = models_[model];
   matches_.assign(first.begin(), first.end());
   MonoCandidate candidate;
@@ -215,14 +239,14 @@ std::optional<MonoCandidate> PoseCheck::settle(std::uint32_t model,
         if (exact[i]) seen.push_back(static_cast<std::uint16_t>(i));
       }
     }
-    if (collect(model, candidate.pose, seen, kRounds_px[round] * options_.scale, 0) < kLeastHits) {
-      return std::nullopt;
-    }
+    const double reach = reach_px(model, candidate.pose, kRounds_px[round], unlike);
+    if (collect(model, candidate.pose, seen, reach, 0) < kLeastHits) return std::nullopt;
   }
   if (!refine(model, candidate.pose, &candidate)) return std::nullopt;
   const double depth = (candidate.pose * search.center).z();
   if (!(depth >= options_.min_depth_m) || !(depth <= options_.max_depth_m)) return std::nullopt;
   const bool all_expected = !leave_out_unseen_types(search.model(), matches_, seen);
+  candidate.unlike = unlike > 0.0;
   candidate.visible = seen.size();
   candidate.matches = matches_;
   double sum = 0.0;
@@ -234,7 +258,7 @@ std::optional<MonoCandidate> PoseCheck::settle(std::uint32_t model,
     sum += d * d;
   }
   candidate.rms_px = std::sqrt(sum / static_cast<double>(candidate.matches.size()));
-  candidate.log10_nfa = score(candidate, seen);
+  candidate.log10_nfa = score(candidate, seen, reach_px(model, candidate.pose, kFinal_px, unlike));
   if (!all_expected) candidate.log10_nfa += std::log10(2.0);  // two ways to count were tried
   if (!edges_.empty()) {
     constexpr double kStep_px = 12.0;
@@ -251,7 +275,9 @@ std::optional<MonoCandidate> PoseCheck::settle(std::uint32_t model,
 // probability that a disc of the tolerance holds one of their type. Links: an edge between two
 // matched points has its link in the image, which the quads of the search ask for twice.
 // Directions: an image vertex' edges lie along the model's.
-double PoseCheck::score(const MonoCandidate& candidate, std::span<const std::uint16_t> seen) const {
+double PoseCheck::score(const MonoCandidate& candidate,
+                        std::span<const std::uint16_t> seen,
+                        double reach) const {
   const SearchModel& search = models_[candidate.model];
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
   std::array<double, kFeatureTypes> of_type{};
@@ -262,7 +288,6 @@ double PoseCheck::score(const MonoCandidate& candidate, std::span<const std::uin
     high = high.cwiseMax(ideal(image_, X));
     of_type[static_cast<std::size_t>(search.model().points[id].type)] += 1.0;
   }
-  const double reach = kFinal_px * options_.scale;
   low.array() -= 2.0 * reach;
   high.array() += 2.0 * reach;
   std::array<double, kFeatureTypes> in_box{};
@@ -274,17 +299,20 @@ double PoseCheck::score(const MonoCandidate& candidate, std::span<const std::uin
   const double disc = std::numbers::pi * reach * reach / (high - low).prod();
   double p = 0.0;
   for (std::size_t type = 0; type < kFeatureTypes; ++type) p += of_type[type] * in_box[type];
-  // The nearer the hits, the less likely by chance: the better of two radii counts (Moisan and
-  // Stival 2004 take the best of all), where the features are placed well enough for the smaller
+  // The nearer the hits, the less likely by chance: the best of three radii counts (Moisan and
+  // Stival 2004 take the best of all), where the features are placed well enough for the smallest
   // one.
-  constexpr std::array<double, 2> kRadii{1.0, 0.5};
+  const double of_image = kFinal_px * options_.scale / reach;
+  const std::array<double, 3> radii{1.0, of_image, 0.5 * of_image};
   double sigma_px = 0.0;
   for (const Match& match : candidate.matches) {
     sigma_px += image_[match.image].sigma_px / static_cast<double>(candidate.matches.size());
   }
   const std::size_t trials = seen.size() - std::min<std::size_t>(4, seen.size());
-  double tail = 0.0, radii = 0.0;
-  for (const double radius : kRadii) {
+  double tail = 0.0, asked = 0.0, last = 2.0;
+  for (const double radius : radii) {
+    if (!(radius < last)) continue;  // the model is taken to be exact
+    last = radius;
     if (radius < 1.0 && 3.0 * sigma_px > radius * reach) continue;
     const std::size_t hits = static_cast<std::size_t>(
         std::count_if(candidate.matches.begin(), candidate.matches.end(), [&](const Match& m) {
@@ -293,12 +321,12 @@ double PoseCheck::score(const MonoCandidate& candidate, std::span<const std::uin
     if (radius < 1.0 && hits < kLeastHits) continue;
     const double chance =
         1.0 - std::exp(-radius * radius * disc * p / static_cast<double>(seen.size()));
-    radii += 1.0;
+    asked += 1.0;
     tail = std::min(
         tail,
         log10_binomial_tail(trials, std::max(hits, kLeastHits - 1) - (kLeastHits - 1), chance));
   }
-  double log10_nfa = options_.log10_tests + std::log10(radii) + tail;
+  double log10_nfa = options_.log10_tests + std::log10(asked) + tail;
 
   std::size_t edges = 0, linked = 0, arms = 0, fitting = 0;
   double chance_of_arm = 0.0;
@@ -380,18 +408,27 @@ void PoseCheck::judge_shape(MonoCandidate& candidate) const {
   constexpr std::size_t kMostSamples = 300;
   const SearchModel& search = models_[candidate.model];
   std::vector<PoseEdge> along;
+  std::vector<SeenEdge> held;
   if (!edges_.empty()) {
     for (const EdgeSample& sample :
          visible_edges(search, camera_, candidate.pose, kStep_px * options_.scale, kMostSamples)) {
       const EdgePoint* edge =
           edges_.nearest(sample.uv, sample.normal, kReach_px * options_.scale, kCosine);
-      if (edge != nullptr)
-        along.push_back({sample.xyz, edge->uv.cast<double>(), sample.normal, kEdgeSigma_px});
+      if (edge == nullptr) continue;
+      const Eigen::Vector2d uv = edge->uv.cast<double>();
+      along.push_back({sample.xyz, uv, sample.normal, kEdgeSigma_px});
+      if (sample.line < search.model().edges.size()) held.push_back({sample, uv});
     }
     candidate.edges = judge_edges(search, camera_, candidate.pose, edges_, options_.scale);
   }
   candidate.shape_odds =
       stretched_rival(search, camera_, candidate.pose, matched_points(candidate), along).log10_odds;
+  if (edges_.empty()) return;  // by points alone faces have no say
+  std::vector<SeenCorner> corners;
+  for (const Match& match : candidate.matches)
+    corners.push_back({match.model, image_[match.image].uv, image_[match.image].sigma_px});
+  candidate.face_odds =
+      face_rival(search, camera_, candidate.pose, corners, held).value_or(candidate.shape_odds);
 }
 
 void PoseCheck::settle_on_edges(MonoCandidate& candidate) const {

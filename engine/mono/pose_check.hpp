@@ -31,12 +31,14 @@ struct MonoCandidate {
   RigidPose pose;
   std::vector<Match> matches{};
   std::size_t visible = 0;
+  bool unlike = false;  // its matches hold only where things may differ from their models
   double rms_px = 0.0;
   double log10_nfa = 0.0;  // of points, links and directions together
   double edge_share = 0.0;
   double edge_odds = 0.0;  // log10, negative for the model: see score_edges
   EdgeEvidence edges{};
   double shape_odds = 0.0;  // log10, positive for the model: see stretched_rival
+  double face_odds = 0.0;   // the same: see face_rival
   bool ambiguous = false;   // `twin`, the other tilt of a plane, fits about as well
   RigidPose twin{};
   double twin_odds = 0.0;  // of the twin against the pose
@@ -79,7 +81,8 @@ class PoseCheck {
   std::span<const Match> grow(std::uint32_t model, RigidPose& pose);
 
   // Refines a pose that passed the quick look, counting again at 5 and 3.5 px, and says what speaks
-  // for it. nullopt where too little is left.
+  // for it. Where the image's edges are known, also with what things differ from their models added
+  // to that: the better of the two is given. nullopt where too little is left.
   std::optional<MonoCandidate> settle(std::uint32_t model,
                                       const RigidPose& pose,
                                       std::span<const Match> start);
@@ -102,8 +105,16 @@ class PoseCheck {
                       double reach_px,
                       std::size_t need);
   std::vector<PosePoint> matched_points(const MonoCandidate& candidate) const;
+  double reach_px(std::uint32_t model, const RigidPose& pose, double image_px, double unlike) const;
+  // With things that may be `unlike` (of the diameter) their models.
+  std::optional<MonoCandidate> settle_within(std::uint32_t model,
+                                             const RigidPose& pose,
+                                             std::span<const Match> start,
+                                             double unlike);
   bool refine(std::uint32_t model, RigidPose& pose, MonoCandidate* result) const;
-  double score(const MonoCandidate& candidate, std::span<const std::uint16_t> seen) const;
+  double score(const MonoCandidate& candidate,
+               std::span<const std::uint16_t> seen,
+               double reach_px) const;
   // How much likelier this share of its edges is where the model stands than where something else
   // has made it fit: log10, negative for the model. Samples are `step_px` apart in an image 640
   // pixels wide.

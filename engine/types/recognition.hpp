@@ -22,10 +22,12 @@ struct MonoPair {
 
 // How a model's edges at a pose lie on the image's, beyond how much of them does. Chance agreement
 // comes in pieces, with the bright side now left, now right, on lines that go straight on past the
-// model's corners.
+// model's corners; and a thing's corners are a little off its model's.
 struct EdgeEvidence {
-  double whole = 0.0;    // share of the visible edges on image edges of one bright side, as long
-  double overrun = 0.0;  // share of the edges' ends past which the image's edge goes straight on
+  double overrun = 0.0;    // share of the edges' ends past which the image's edge goes straight on
+  double supported = 0.0;  // share of the visible length that lies on one line of the image an edge
+  double lined = 0.0;      // how many edges do on four fifths of their visible length
+  double bend = 0.0;  // mean square of how far the edges' ends had to move, by what is expected
 };
 
 // One model at one pose in the image.
@@ -43,7 +45,8 @@ struct MonoHypothesis {
   double edge_share = 0.0;  // of the visible edges' length, what lies on edges of the image
   double margin = 0.0;      // to the best rival: another model, or another pose of this one
   EdgeEvidence edges{};
-  double shape_odds = 0.0;
+  double shape_odds = 0.0;  // log10, positive for the model: its proportions against others
+  double face_odds = 0.0;   // the same of the places of its faces
   std::string symmetry = "none";
   bool ambiguous = false;  // a second pose of a plane explains the points about as well
   std::vector<MonoPair> pairs{};

@@ -95,7 +95,7 @@ TEST(PoseCheck, TellsWhetherEdgesRunAsTheModelsDo) {
   std::optional<MonoCandidate> right = looked.settled();
   ASSERT_TRUE(right);
   looked.check.judge_shape(*right);
-  EXPECT_GT(right->edges.whole, 0.6);
+  EXPECT_GT(right->edges.supported, 0.6);
   EXPECT_LT(right->edges.overrun, 0.2);
   MonoScene scene = Looked::make_scene(true);
   for (EdgePoint& edge : scene.features.edges) edge.uv *= 0.01F;  // all in a corner
@@ -103,7 +103,7 @@ TEST(PoseCheck, TellsWhetherEdgesRunAsTheModelsDo) {
   std::optional<MonoCandidate> wrong = elsewhere.settled();
   ASSERT_TRUE(wrong);
   elsewhere.check.judge_shape(*wrong);
-  EXPECT_EQ(wrong->edges.whole, 0.0);
+  EXPECT_EQ(wrong->edges.supported, 0.0);
 }
 
 TEST(PoseCheck, WithoutEdgesTheyHaveNoSay) {
