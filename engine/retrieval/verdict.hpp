@@ -34,7 +34,7 @@ struct VerdictOptions {
   double sure_confidence = 0.8;
   // Of a place, below that confidence: what an area of the view contradicts by more than this share
   // is another place.
-  double most_contradicted = 0.07;
+  double most_contradicted = 0.05;
   // Of an object, below that confidence. A rival against which hardly more of the points that tell
   // the two apart speak for the best is one too, and one in reach (of this share) against which
   // less than two thirds do (0.3 = 0.65 - 0.35).

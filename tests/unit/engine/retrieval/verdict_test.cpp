@@ -116,12 +116,12 @@ TEST(Judge, TakesNoUnsurePoseThatAnAreaOfTheViewContradicts) {
     best.evidence.agreeing = agreeing;
     return judge(compared(best, rival, 0.2F), entries(1, 0.05), kZero, {});
   };
-  const Verdict unsure = verdict(0.09, 30.0);
+  const Verdict unsure = verdict(0.07, 12.0);
   EXPECT_GE(unsure.judged[0].confidence, 0.5);
   EXPECT_LT(unsure.judged[0].confidence, VerdictOptions{}.sure_confidence);
   EXPECT_EQ(unsure.status, QueryStatus::kNotFound);
-  EXPECT_EQ(verdict(0.06, 30.0).status, QueryStatus::kLocalized);
-  const Verdict sure = verdict(0.09, 4000.0);
+  EXPECT_EQ(verdict(0.04, 12.0).status, QueryStatus::kLocalized);
+  const Verdict sure = verdict(0.07, 4000.0);
   EXPECT_GE(sure.judged[0].confidence, VerdictOptions{}.sure_confidence);
   EXPECT_EQ(sure.status, QueryStatus::kLocalized);
 }
