@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "engine/mono/chance_score.hpp"
 #include "engine/mono/face_rival.hpp"
 #include "engine/mono/point_pose.hpp"
 #include "engine/mono/refine_pose.hpp"
@@ -16,15 +16,9 @@ namespace {
 // Tolerances in pixels of a 640 pixels wide image: the quick look, then after each refinement.
 constexpr double kLook_px = 8.0;
 constexpr std::array<double, 3> kRounds_px{5.0, 3.5, 3.5};
-constexpr double kFinal_px = 3.5;
 constexpr double kUnlike = 0.015;  // of the diameter: how far a thing's corners are off its model's
-constexpr std::size_t kLeastHits = 5;
-constexpr double kLeastShare = 0.35;        // of the visible points
-constexpr double kHuber = 2.0;              // sigmas
-constexpr double kChanceOfLink = 0.25;      // at most, of two chance matches: see score
-constexpr std::size_t kSearched = 3;        // links that the search itself has asked for
-constexpr double kLeastChanceOfArm = 0.25;  // edges of real scenes share their directions
-constexpr double kDirection_rad = 12.0 * std::numbers::pi / 180.0;
+constexpr double kLeastShare = 0.35;  // of the visible points
+constexpr double kHuber = 2.0;        // sigmas
 
 constexpr std::size_t kGrowFrom = 7;  // points that agree before a pose is refined to find more
 
@@ -32,14 +26,6 @@ constexpr std::size_t kGrowFrom = 7;  // points that agree before a pose is refi
 std::size_t hits_needed(std::size_t visible) {
   return std::max(kLeastHits,
                   static_cast<std::size_t>(std::ceil(kLeastShare * static_cast<double>(visible))));
-}
-
-Eigen::Vector2d ideal(const ImageView& image, const Eigen::Vector3d& X) {
-  return image.focal_px() * X.head<2>() / X.z();
-}
-
-double turned_apart(double a, double b) {
-  return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi));
 }
 
 // Faces have a centroid in the image and arcs an inflexion only where nothing is printed on them or
@@ -60,22 +46,6 @@ bool leave_out_unseen_types(const MonoModel& model,
 }
 
 }  // namespace
-
-double log10_binomial_tail(std::size_t trials, std::size_t hits, double p) {
-  if (hits == 0) return 0.0;
-  if (hits > trials || !(p > 0.0)) return hits > trials ? -300.0 : -300.0;
-  if (p >= 1.0) return 0.0;
-  // Terms from `hits` on; each is the last times (n - k) / (k + 1) * p / (1 - p).
-  const double n = static_cast<double>(trials), k0 = static_cast<double>(hits);
-  const double log_first = std::lgamma(n + 1.0) - std::lgamma(k0 + 1.0) -
-                           std::lgamma(n - k0 + 1.0) + k0 * std::log(p) + (n - k0) * std::log1p(-p);
-  double sum = 1.0, term = 1.0;
-  for (double k = k0; k < n; k += 1.0) {
-    term *= (n - k) / (k + 1.0) * p / (1.0 - p);
-    sum += term;
-  }
-  return std::min(0.0, (log_first + std::log(sum)) / std::numbers::ln10);
-}
 
 PoseCheck::PoseCheck(std::span<const SearchModel> models,
                      const ImageView& image,
@@ -112,7 +82,7 @@ std::size_t PoseCheck::collect(std::uint32_t model,
     } else {
       const Eigen::Vector3d X = pose * point.xyz;
       if (!(X.z() > 0.0)) continue;
-      xy = ideal(image_, X);
+      xy = straight_px(image_, X);
     }
     const int at = image_.nearest(static_cast<std::uint8_t>(search.model().points[id].type), xy);
     if (at < 0) continue;
@@ -258,7 +228,12 @@ std::optional<MonoCandidate> PoseCheck::settle_within(std::uint32_t model,
     sum += d * d;
   }
   candidate.rms_px = std::sqrt(sum / static_cast<double>(candidate.matches.size()));
-  candidate.log10_nfa = score(candidate, seen, reach_px(model, candidate.pose, kFinal_px, unlike));
+  candidate.log10_nfa = log10_false_alarms(candidate,
+                                           models_[model],
+                                           image_,
+                                           seen,
+                                           reach_px(model, candidate.pose, kFinal_px, unlike),
+                                           options_);
   if (!all_expected) candidate.log10_nfa += std::log10(2.0);  // two ways to count were tried
   if (!edges_.empty()) {
     constexpr double kStep_px = 12.0;
@@ -269,113 +244,6 @@ std::optional<MonoCandidate> PoseCheck::settle_within(std::uint32_t model,
     candidate.edge_odds = score_edges(samples.size(), kStep_px, candidate.edge_share);
   }
   return candidate;
-}
-
-// Points: of those visible, four fix the pose and the others meet a feature by chance with the
-// probability that a disc of the tolerance holds one of their type. Links: an edge between two
-// matched points has its link in the image, which the quads of the search ask for twice.
-// Directions: an image vertex' edges lie along the model's.
-double PoseCheck::score(const MonoCandidate& candidate,
-                        std::span<const std::uint16_t> seen,
-                        double reach) const {
-  const SearchModel& search = models_[candidate.model];
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
-  std::array<double, kFeatureTypes> of_type{};
-  for (const std::uint16_t id : seen) {
-    const Eigen::Vector3d X = candidate.pose * search.points[id].xyz;
-    if (!(X.z() > 0.0)) continue;
-    low = low.cwiseMin(ideal(image_, X));
-    high = high.cwiseMax(ideal(image_, X));
-    of_type[static_cast<std::size_t>(search.model().points[id].type)] += 1.0;
-  }
-  low.array() -= 2.0 * reach;
-  high.array() += 2.0 * reach;
-  std::array<double, kFeatureTypes> in_box{};
-  for (const ImageView::Point& point : image_.points()) {
-    if ((point.xy.array() >= low.array()).all() && (point.xy.array() <= high.array()).all()) {
-      in_box[point.type] += 1.0;
-    }
-  }
-  const double disc = std::numbers::pi * reach * reach / (high - low).prod();
-  double p = 0.0;
-  for (std::size_t type = 0; type < kFeatureTypes; ++type) p += of_type[type] * in_box[type];
-  // The nearer the hits, the less likely by chance: the best of three radii counts (Moisan and
-  // Stival 2004 take the best of all), where the features are placed well enough for the smallest
-  // one.
-  const double of_image = kFinal_px * options_.scale / reach;
-  const std::array<double, 3> radii{1.0, of_image, 0.5 * of_image};
-  double sigma_px = 0.0;
-  for (const Match& match : candidate.matches) {
-    sigma_px += image_[match.image].sigma_px / static_cast<double>(candidate.matches.size());
-  }
-  const std::size_t trials = seen.size() - std::min<std::size_t>(4, seen.size());
-  double tail = 0.0, asked = 0.0, last = 2.0;
-  for (const double radius : radii) {
-    if (!(radius < last)) continue;  // the model is taken to be exact
-    last = radius;
-    if (radius < 1.0 && 3.0 * sigma_px > radius * reach) continue;
-    const std::size_t hits = static_cast<std::size_t>(
-        std::count_if(candidate.matches.begin(), candidate.matches.end(), [&](const Match& m) {
-          return radius == 1.0 || double{m.distance_px} <= radius * reach;
-        }));
-    if (radius < 1.0 && hits < kLeastHits) continue;
-    const double chance =
-        1.0 - std::exp(-radius * radius * disc * p / static_cast<double>(seen.size()));
-    asked += 1.0;
-    tail = std::min(
-        tail,
-        log10_binomial_tail(trials, std::max(hits, kLeastHits - 1) - (kLeastHits - 1), chance));
-  }
-  double log10_nfa = options_.log10_tests + std::log10(asked) + tail;
-
-  std::size_t edges = 0, linked = 0, arms = 0, fitting = 0;
-  double chance_of_arm = 0.0;
-  std::vector<int> image_of(search.points.size(), -1);
-  for (const Match& match : candidate.matches) image_of[match.model] = match.image;
-  for (const Match& match : candidate.matches) {
-    const ImageView::Point& at = image_[match.image];
-    const Eigen::Vector3d here = candidate.pose * search.points[match.model].xyz;
-    for (const std::uint32_t other : search.neighbours[match.model]) {
-      const int image = image_of[other];
-      const bool joined = image >= 0 && image_.linked(match.image, static_cast<std::size_t>(image));
-      if (image >= 0 && other > match.model) {
-        ++edges;
-        linked += joined ? 1 : 0;
-      }
-      if (joined) continue;  // a link lies along the edge: its direction says nothing new
-      if (at.directions.empty()) continue;
-      const Eigen::Vector3d there = candidate.pose * search.points[other].xyz;
-      if (!(there.z() > 0.0)) continue;
-      const Eigen::Vector2d d = ideal(image_, there) - ideal(image_, here);
-      const double direction = std::atan2(d.y(), d.x());
-      ++arms;
-      chance_of_arm +=
-          std::clamp(static_cast<double>(at.directions.size()) * kDirection_rad / std::numbers::pi,
-                     kLeastChanceOfArm,
-                     0.9);
-      fitting += std::any_of(at.directions.begin(),
-                             at.directions.end(),
-                             [&](double seen_direction) {
-                               return turned_apart(seen_direction, direction) < kDirection_rad;
-                             })
-                     ? 1
-                     : 0;
-    }
-  }
-  if (image_.link_count() > 0 && edges > kSearched) {
-    // A point is linked to as many others as on the mean, out of the eight around it.
-    const double degree =
-        2.0 * static_cast<double>(image_.link_count()) / static_cast<double>(image_.size());
-    const double q = std::clamp(degree / 8.0, 0.02, kChanceOfLink);
-    log10_nfa +=
-        log10_binomial_tail(edges - kSearched, linked > kSearched ? linked - kSearched : 0, q);
-  }
-  if (arms > kSearched) {
-    log10_nfa += log10_binomial_tail(arms - kSearched,
-                                     fitting > kSearched ? fitting - kSearched : 0,
-                                     chance_of_arm / static_cast<double>(arms));
-  }
-  return log10_nfa;
 }
 
 // How much likelier this share of its edges is where the model stands than where something else

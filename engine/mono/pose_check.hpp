@@ -112,9 +112,6 @@ class PoseCheck {
                                              std::span<const Match> start,
                                              double unlike);
   bool refine(std::uint32_t model, RigidPose& pose, MonoCandidate* result) const;
-  double score(const MonoCandidate& candidate,
-               std::span<const std::uint16_t> seen,
-               double reach_px) const;
   // How much likelier this share of its edges is where the model stands than where something else
   // has made it fit: log10, negative for the model. Samples are `step_px` apart in an image 640
   // pixels wide.
@@ -131,8 +128,5 @@ class PoseCheck {
   std::size_t looks_ = 0;
   std::vector<Match> matches_;
 };
-
-// log10 of P(at least `hits` of `trials`), each by chance `p`.
-double log10_binomial_tail(std::size_t trials, std::size_t hits, double p);
 
 }  // namespace landmarkdb
