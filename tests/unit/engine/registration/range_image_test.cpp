@@ -280,6 +280,17 @@ TEST(RangeImage, KeepsItsCellsFineWhereAViewIsInShreds) {
   EXPECT_EQ(counts.agree, counts.predicted());
 }
 
+TEST(RangeImage, HidesWhatLiesBehindWhatWasMeasured) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  constexpr float kSlack_m = 0.1F;
+  EXPECT_TRUE(image.hides({0.3F, 0.2F, 3.0F}, kSlack_m));
+  EXPECT_FALSE(image.hides({0.3F, 0.2F, 2.05F}, kSlack_m)) << "on the wall, within the slack";
+  EXPECT_FALSE(image.hides({0.3F, 0.2F, 1.0F}, kSlack_m)) << "before it";
+  EXPECT_FALSE(image.hides({3.0F, 0.0F, 3.0F}, kSlack_m)) << "beside the view";
+  EXPECT_FALSE(image.hides({0.0F, 0.0F, -3.0F}, kSlack_m)) << "behind the sensor";
+  EXPECT_FALSE(image.hides(Eigen::Vector3f::Zero(), kSlack_m));
+}
+
 TEST(RangeImage, HoldsAgainstCloudsThatHoldNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const Points& points :

@@ -52,6 +52,30 @@ TEST(CleanQuery, TakesAnEmptyCloud) {
   EXPECT_TRUE(query.centre.isZero());
 }
 
+TEST(DensePart, KeepsWhatIsDenseEnoughWithItsEdgesAndNothingFarFromIt) {
+  // A patch of points a centimetre apart, and another 40 cm apart three metres away.
+  PointCloud cloud;
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j) {
+      const auto x = static_cast<float>(i);
+      const auto y = static_cast<float>(j);
+      cloud.points.emplace_back(0.01F * x, 0.01F * y, 1.0F);
+      cloud.normals.emplace_back(0.0F, 0.0F, -1.0F);
+      if (i % 4 == 0 && j % 4 == 0) {
+        cloud.points.emplace_back(3.0F + 0.1F * x, 0.1F * y, 1.0F);
+        cloud.normals.emplace_back(0.0F, 0.0F, -1.0F);
+      }
+    }
+  }
+  const CleanQuery query = clean_query(cloud);
+  const CleanQuery dense = dense_part(query, 0.015, {});
+  EXPECT_EQ(dense.cloud.size(), 1600U);
+  EXPECT_EQ(dense.cloud.normals.size(), query.cloud.normals.empty() ? 0U : 1600U);
+  EXPECT_LT(dense.cloud.points.back().x(), 1.0F);
+  EXPECT_EQ(dense_part(query, 0.5, {}).cloud.size(), query.cloud.size());
+  EXPECT_EQ(dense_part(query, 0.001, {}).cloud.size(), 0U);
+}
+
 TEST(ViewQuery, DescribesTheCloudAtTheResolutionAsked) {
   const testing::SyntheticScene room = testing::small_room(2);
   const CleanQuery query = clean_query(testing::frame_in(room, 1).cloud);
