@@ -46,6 +46,7 @@ void RangeImage::choose_step(std::span<const Eigen::Vector3f> points) {
     }
     if (step_rad_ >= kCoarsestRad) break;
   }
+  if (step_rad_ == best_step_rad) return;
   step_rad_ = best_step_rad;
   measure(points);
 }
