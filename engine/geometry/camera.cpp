@@ -74,6 +74,11 @@ std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector
   return distort(camera, ray);
 }
 
+bool in_image(const Camera& camera, const Eigen::Vector2d& uv) {
+  return uv.x() >= 0.0 && uv.y() >= 0.0 && uv.x() <= camera.width - 1.0 &&
+         uv.y() <= camera.height - 1.0;
+}
+
 std::optional<Eigen::Vector2d> undistort(const Camera& camera, const Eigen::Vector2d& uv) {
   constexpr int kSteps = 20;        // Newton needs 3 to 5 inside the calibrated range
   constexpr double kStill = 1e-15;  // a step this small changes nothing

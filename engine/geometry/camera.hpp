@@ -51,6 +51,9 @@ bool inside_lens_model(const Camera& camera, const Eigen::Vector2d& ray);
 // outside the lens model. The image's border is not looked at.
 std::optional<Eigen::Vector2d> project(const Camera& camera, const Eigen::Vector3d& p_camera);
 
+// Whether the pixel lies within the image, centres of the outer pixels included.
+bool in_image(const Camera& camera, const Eigen::Vector2d& uv);
+
 // The direction (x, y at z = 1) that pixel `uv` sees: the inverse of distort, by Newton's method to
 // the last digit. nullopt outside the lens model: beyond its fold, or where it does not converge.
 // Such a point is refused, never moved to the rim.

@@ -81,17 +81,8 @@ class Consensus {
     Eigen::Vector2d b = Eigen::Vector2d::Zero();
   };
 
-  std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& place) const {
-    const Eigen::Vector3d X = pose_ * place;
-    if (!(X.z() > 0.0)) return std::nullopt;
-    const Eigen::Vector2d ray = X.head<2>() / X.z();
-    if (!inside_lens_model(camera_, ray)) return std::nullopt;
-    return distort(camera_, ray);
-  }
-
-  bool in_image(const Eigen::Vector2d& uv) const {
-    return uv.x() >= 0.0 && uv.y() >= 0.0 && uv.x() <= camera_.width - 1.0 &&
-           uv.y() <= camera_.height - 1.0;
+  std::optional<Eigen::Vector2d> project_place(const Eigen::Vector3d& place) const {
+    return project(camera_, pose_ * place);
   }
 
   // Samples of an edge, were all of it seen.
@@ -110,8 +101,8 @@ class Consensus {
     for (std::size_t i = 0; i < n; ++i) {
       const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
       const Eigen::Vector3d place = A + at * (B - A);
-      const std::optional<Eigen::Vector2d> uv = project(place);
-      if (!uv || !in_image(*uv) || !sight_.sees(place)) continue;
+      const std::optional<Eigen::Vector2d> uv = project_place(place);
+      if (!uv || !in_image(camera_, *uv) || !sight_.sees(place)) continue;
       Sample& sample = samples.emplace_back(Sample{at, {}});
       grid_.for_each_across(*uv, normal, reach_px_, kCosine, [&](double offset, double cosine) {
         sample.crossings.push_back({offset, cosine > 0.0 ? 1 : -1});
@@ -202,7 +193,7 @@ class Consensus {
 
   void judge_edge(std::uint32_t a, std::uint32_t b) {
     const Eigen::Vector3d &A = model_.model().points[a].xyz, &B = model_.model().points[b].xyz;
-    const std::optional<Eigen::Vector2d> from = project(A), to = project(B);
+    const std::optional<Eigen::Vector2d> from = project_place(A), to = project_place(B);
     if (!from || !to) return;
     const double length_px = (*to - *from).norm();
     if (!(length_px > 0.0)) return;
@@ -249,8 +240,9 @@ class Consensus {
                                circle.radius_m * (std::cos(at) * u + std::sin(at) * v));
       };
       const Eigen::Vector3d place = on_rim(angle);
-      const std::optional<Eigen::Vector2d> uv = project(place), next = project(on_rim(angle + 0.1));
-      if (!uv || !next || !in_image(*uv) || !sight_.sees(place)) continue;
+      const std::optional<Eigen::Vector2d> uv = project_place(place),
+                                           next = project_place(on_rim(angle + 0.1));
+      if (!uv || !next || !in_image(camera_, *uv) || !sight_.sees(place)) continue;
       const Eigen::Vector2d step = *next - *uv;
       if (!(step.norm() > 0.0)) continue;
       const Eigen::Vector2d normal = Eigen::Vector2d(-step.y(), step.x()).normalized();

@@ -49,16 +49,7 @@ class EdgeJudge {
 
  private:
   std::optional<Eigen::Vector2d> project_place(const Eigen::Vector3d& place) const {
-    const Eigen::Vector3d X = pose_ * place;
-    if (!(X.z() > 0.0)) return std::nullopt;
-    const Eigen::Vector2d ray = X.head<2>() / X.z();
-    if (!inside_lens_model(camera_, ray)) return std::nullopt;
-    return distort(camera_, ray);
-  }
-
-  bool in_image(const Eigen::Vector2d& uv) const {
-    return uv.x() >= 0.0 && uv.y() >= 0.0 && uv.x() <= camera_.width - 1.0 &&
-           uv.y() <= camera_.height - 1.0;
+    return project(camera_, pose_ * place);
   }
 
   // 0: no image edge there; else which side is the brighter.
@@ -84,7 +75,7 @@ class EdgeJudge {
       const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
       const Eigen::Vector3d place = A + at * (B - A);
       const std::optional<Eigen::Vector2d> uv = project_place(place);
-      const bool seen = uv && in_image(*uv) && sight_.sees(place);
+      const bool seen = uv && in_image(camera_, *uv) && sight_.sees(place);
       if (i == 0) first_seen = seen;
       if (i + 1 == n) last_seen = seen;
       if (!seen) continue;
@@ -117,7 +108,7 @@ class EdgeJudge {
     int hits = 0;
     for (int i = 0; i < kSamples; ++i) {
       const Eigen::Vector2d uv = *corners_[at] + (kFirst_px + kNext_px * i) * scale_ * on;
-      if (!in_image(uv)) return;
+      if (!in_image(camera_, uv)) return;
       hits += side_at(uv, normal, kNarrow_px) == side ? 1 : 0;
     }
     ends_ += 1.0;
