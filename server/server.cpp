@@ -128,6 +128,7 @@ struct Server::State {
   boost::asio::signal_set signals{control};
   boost::asio::steady_timer stop_timer{control};
   bool stopping = false;
+  bool stopped = false;  // nothing is waited for any more
   bool cancelled = false;
   std::chrono::steady_clock::time_point stop_began;
 
@@ -207,7 +208,7 @@ SessionEvents Server::State::events_of(std::uint64_t id) {
 
 void Server::State::wait_for_signal() {
   signals.async_wait([this](const error_code& error, int number) {
-    if (error) return;
+    if (error || stopped) return;
     wait_for_signal();  // before begin_stop(), which may cancel this wait
     if (number == SIGHUP) {
       log.write(LogLevel::kInfo, "reload on SIGHUP");
@@ -235,6 +236,7 @@ void Server::State::begin_stop() {
 void Server::State::watch_stop() {
   if (sessions.empty()) {
     error_code ignored;
+    stopped = true;  // a second signal may be on its way, which the cancelling does not reach
     signals.cancel(ignored);
     work.reset();
     return;

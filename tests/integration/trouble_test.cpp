@@ -76,6 +76,17 @@ TEST(Client, SaysThatThereIsNoServer) {
   EXPECT_EQ(unix_socket.json()["error"]["code"], "UNAVAILABLE");
 }
 
+TEST(Server, StopsWhenTwoSignalsComeAtOnce) {
+  ServerProcess server(site().db);
+  Running& process = server.process();
+  process.signal(SIGSTOP);  // both wait for it
+  process.signal(SIGINT);
+  process.signal(SIGTERM);
+  process.signal(SIGCONT);
+  const Outcome outcome = process.wait(std::chrono::seconds(30));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
 TEST(Server, SaysThatThePortIsBusy) {
   ServerProcess first(site().db);
   const Outcome second = run("landmarkdb-server", {"--db", site().db, "--listen", first.address()});
