@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "engine/geometry/pose.hpp"
-#include "engine/registration/plane_sums.hpp"
+#include "engine/registration/plane_pairs.hpp"
 
 namespace landmarkdb {
 
@@ -15,28 +15,21 @@ namespace {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-// What the pose of one step pairs, every `stride`-th source point.
+// What the pose of one step pairs; points are told from `centre` (target frame).
 PlaneSums accumulate(const SurfaceGrid& target,
-                     std::span<const Eigen::Vector3f> source,
-                     std::span<const Eigen::Vector3f> source_normals,
-                     std::size_t stride,
+                     const PointGroups& source,
                      const Eigen::Isometry3d& T,
                      const Eigen::Vector3d& centre,
                      double scale_m,
                      double min_agreement) {
-  PlaneSummer summer(PairWeight::kGemanMcClure, scale_m);
-  const Eigen::Matrix3f R = T.linear().cast<float>();
-  const Eigen::Vector3f t = T.translation().cast<float>();
-  const Eigen::Vector3f middle = centre.cast<float>();
-  const auto agreement = static_cast<float>(min_agreement);
-  for (std::size_t i = 0; i < source.size(); i += stride) {
-    const Eigen::Vector3f p = R * source[i] + t;
-    const Surfel& surfel = target.near_or_none(p);
-    const bool agrees = surfel.normal.dot(R * source_normals[i]) >= agreement;
-    summer.add(
-        surfel.normal, p - middle, surfel.normal.dot(p - surfel.point), agrees ? 1.0F : 0.0F);
-  }
-  return summer.finish();
+  return pair_and_sum(target,
+                      source,
+                      source.groups(),
+                      {T.linear().cast<float>(), T.translation().cast<float>()},
+                      {.factor = PairFactor::kWhole,
+                       .min_agreement = static_cast<float>(min_agreement),
+                       .centre = centre.cast<float>()},
+                      PlaneSummer(PairWeight::kGemanMcClure, scale_m));
 }
 
 // Solves A x = b in the directions that A fixes; the others stay at zero. `length` brings rotation
@@ -84,15 +77,15 @@ IcpResult refine_icp(const SurfaceGrid& target,
   double scale_cells = options.start_scale_cells;
   // While the scale shrinks some hundreds of points show the way as well as all.
   constexpr std::size_t kEnoughOnTheWay = 800;
-  const std::size_t stride = std::max<std::size_t>(1, source.size() / kEnoughOnTheWay);
+  const PointGroups on_the_way(
+      source, source_normals, std::max<std::size_t>(1, source.size() / kEnoughOnTheWay));
+  const PointGroups all(source, source_normals);
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     Eigen::Isometry3d& T = result.T_target_source;
     const Eigen::Vector3d centre = T * centre_source;
     const bool at_end = scale_cells <= options.end_scale_cells * 1.001;
     const PlaneSums sum = accumulate(target,
-                                     source,
-                                     source_normals,
-                                     at_end ? 1 : stride,
+                                     at_end ? all : on_the_way,
                                      T,
                                      centre,
                                      scale_cells * cell,
@@ -111,9 +104,7 @@ IcpResult refine_icp(const SurfaceGrid& target,
   }
   result.centre_target = result.T_target_source * centre_source;
   const PlaneSums final_sum = accumulate(target,
-                                         source,
-                                         source_normals,
-                                         1,
+                                         all,
                                          result.T_target_source,
                                          result.centre_target,
                                          options.end_scale_cells * cell,

@@ -1,5 +1,7 @@
 #include "engine/registration/plane_sums.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <cstring>
 
@@ -60,16 +62,16 @@ PlaneKernel plane_kernel(const char* instruction_set) {
 PlaneSummer::PlaneSummer(PairWeight weight, double scale_m)
     : weight_(weight), factor_(factor_of(weight, scale_m)) {}
 
-const PlaneSums& PlaneSummer::finish() {
-  flush();
-  return sums_;
-}
-
-void PlaneSummer::flush() {
+void PlaneSummer::add(const float* values, std::size_t groups) {
   static const PlaneKernel kernel = best_kernel();
-  if (held_ == 0) return;
+  assert(groups <= kMostGroups && "sums in single precision stay short");
   std::array<float, kPlaneTerms> terms{};
-  kernel(values_.data(), (held_ + kLanes - 1) / kLanes, weight_, factor_, terms.data());
+  kernel(values, groups, weight_, factor_, terms.data());
+  for (std::size_t group = 0; group < groups; ++group) {
+    const float* factors = values + (group * kNumbers + kNumbers - 1) * kLanes;
+    sums_.pairs += static_cast<std::size_t>(
+        std::count_if(factors, factors + kLanes, [](float factor) { return factor > 0.0F; }));
+  }
   std::size_t term = 0;
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column <= row; ++column) {
@@ -81,7 +83,6 @@ void PlaneSummer::flush() {
   for (int row = 0; row < 6; ++row) sums_.b(row) -= static_cast<double>(terms[term++]);
   sums_.weight += static_cast<double>(terms[term++]);
   sums_.squared_m2 += static_cast<double>(terms[term++]);
-  held_ = 0;
 }
 
 }  // namespace landmarkdb

@@ -43,14 +43,15 @@ TestPoints select_test_points(std::span<const Eigen::Vector3f> points,
   }
   const std::size_t taken = std::min(count, keys.size());
   std::partial_sort(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(taken), keys.end());
-  TestPoints test;
-  test.points.reserve(taken);
-  test.normals.reserve(taken);
+  std::vector<Eigen::Vector3f> drawn;
+  std::vector<Eigen::Vector3f> drawn_normals;
+  drawn.reserve(taken);
+  drawn_normals.reserve(taken);
   for (std::size_t i = 0; i < taken; ++i) {
-    test.points.push_back(points[keys[i].second]);
-    test.normals.push_back(normals[keys[i].second]);
+    drawn.push_back(points[keys[i].second]);
+    drawn_normals.push_back(normals[keys[i].second]);
   }
-  return test;
+  return {std::move(drawn), std::move(drawn_normals)};
 }
 
 float score_pose(const SurfaceGrid& target,
@@ -59,19 +60,21 @@ float score_pose(const SurfaceGrid& target,
                  const Eigen::Matrix3f& R_target_source,
                  const Eigen::Vector3f& t_target_source,
                  const ScoreOptions& options) {
+  const auto whole = [](std::size_t n) {
+    return (n + PointGroups::kLanes - 1) / PointGroups::kLanes;
+  };
+  const PointGroups& all = test.groups();
+  const std::size_t groups = std::min(whole(count), all.groups());
+  if (groups == 0) return -1.0F;
   const float sigma = options.sigma_cells * target.cell_m();
-  const float factor = -0.5F / (sigma * sigma);
-  const std::size_t n = std::min(count, test.size());
-  if (n == 0) return -1.0F;
-  float sum = 0.0F;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (i == options.first_look && sum < options.hopeless * static_cast<float>(i)) {
-      return sum / static_cast<float>(i) - 1.0F;
-    }
-    const Eigen::Vector3f p = R_target_source * test.points[i] + t_target_source;
-    sum += surface_fit(target, p, R_target_source * test.normals[i], factor);
-  }
-  return sum / static_cast<float>(n);
+  return pair_kernels().mean_fit(target,
+                                 all.group(0),
+                                 groups,
+                                 std::min(groups * PointGroups::kLanes, all.size()),
+                                 {R_target_source, t_target_source},
+                                 {.factor = -0.5F / (sigma * sigma),
+                                  .first_groups = whole(options.first_look),
+                                  .hopeless = options.hopeless});
 }
 
 }  // namespace landmarkdb

@@ -3,20 +3,34 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "engine/base/fast_exp.hpp"
+#include "engine/registration/plane_pairs.hpp"
 #include "engine/registration/surface_grid.hpp"
 
 namespace landmarkdb {
 
 // Points that stand for a cloud in a quick test, most telling first: any prefix is a fair sample.
-struct TestPoints {
-  std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;
-  std::size_t size() const { return points.size(); }
+class TestPoints {
+ public:
+  TestPoints() = default;
+  // One unit normal a point.
+  TestPoints(std::vector<Eigen::Vector3f> points, std::vector<Eigen::Vector3f> normals)
+      : points_(std::move(points)), normals_(std::move(normals)), groups_(points_, normals_) {}
+
+  std::size_t size() const { return points_.size(); }
+  std::span<const Eigen::Vector3f> points() const { return points_; }
+  std::span<const Eigen::Vector3f> normals() const { return normals_; }
+  const PointGroups& groups() const { return groups_; }  // of the same
+
+ private:
+  std::vector<Eigen::Vector3f> points_;
+  std::vector<Eigen::Vector3f> normals_;
+  PointGroups groups_;
 };
 
 // Draws up to `count` points so that rare surface directions are not drowned by floors and walls: a
@@ -30,9 +44,10 @@ TestPoints select_test_points(std::span<const Eigen::Vector3f> points,
                               std::uint64_t seed);
 
 struct ScoreOptions {
-  float sigma_cells = 1.0F;     // of the plane distance, in cells of the grid
-  std::size_t first_look = 32;  // points after which a hopeless pose is given up
-  float hopeless = 0.15F;       // mean score of the first look below which it is
+  float sigma_cells = 1.0F;  // of the plane distance, in cells of the grid
+  // Points after which a hopeless pose is given up, rounded up to whole groups of 16.
+  std::size_t first_look = 32;
+  float hopeless = 0.15F;  // mean score of the first look below which it is
 };
 
 // How well one point lies on the surface: max(0, n.n') exp(factor d^2), d the distance to the plane
@@ -48,8 +63,9 @@ inline float surface_fit(const SurfaceGrid& target,
 }
 
 // How well the points lie on the surface under the pose: the mean over the first `count` test
-// points of max(0, n.n') exp(-d^2 / 2 sigma^2), d the distance to the plane of the surface near;
-// 0..1. A pose given up at the first look gets that look's score minus one (below 0).
+// points (rounded up to whole groups of 16) of max(0, n.n') exp(-d^2 / 2 sigma^2), d the distance
+// to the plane of the surface near; 0..1. A pose given up at the first look gets that look's score
+// minus one (below 0).
 float score_pose(const SurfaceGrid& target,
                  const TestPoints& test,
                  std::size_t count,

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "engine/registration/plane_pairs.hpp"
 #include "engine/registration/plane_sums.hpp"
 
 namespace landmarkdb {
@@ -26,30 +28,13 @@ Moved moved_centre(const TestPoints& test,
                    const Eigen::Vector3f& t) {
   Moved moved;
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-  for (std::size_t i = 0; i < n; ++i) mean += test.points[i];
+  const std::span<const Eigen::Vector3f> points = test.points().first(n);
+  for (const Eigen::Vector3f& p : points) mean += p;
   mean /= static_cast<float>(n);
-  for (std::size_t i = 0; i < n; ++i) moved.spread_m2 += (test.points[i] - mean).squaredNorm();
+  for (const Eigen::Vector3f& p : points) moved.spread_m2 += (p - mean).squaredNorm();
   moved.spread_m2 /= static_cast<float>(n);
   moved.centre = R * mean + t;
   return moved;
-}
-
-// The normal equations of (translation, rotation about `centre`).
-PlaneSums accumulate(const SurfaceGrid& target,
-                     const TestPoints& test,
-                     std::size_t n,
-                     double sigma_m,
-                     const Eigen::Matrix3f& R,
-                     const Eigen::Vector3f& t,
-                     const Eigen::Vector3f& centre) {
-  PlaneSummer summer(PairWeight::kGaussian, sigma_m);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3f p = R * test.points[i] + t;
-    const Surfel& surfel = target.near_or_none(p);
-    const float agreement = std::max(surfel.normal.dot(R * test.normals[i]), 0.0F);
-    summer.add(surfel.normal, p - centre, surfel.normal.dot(p - surfel.point), agreement);
-  }
-  return summer.finish();
 }
 
 }  // namespace
@@ -59,7 +44,10 @@ void settle_pose(const SurfaceGrid& target,
                  const SettleOptions& options,
                  Eigen::Matrix3f& R_target_source,
                  Eigen::Vector3f& t_target_source) {
-  const std::size_t n = std::min(options.points, test.size());
+  const PointGroups& all = test.groups();
+  const std::size_t groups =
+      std::min((options.points + PointGroups::kLanes - 1) / PointGroups::kLanes, all.groups());
+  const std::size_t n = std::min(groups * PointGroups::kLanes, all.size());
   constexpr std::size_t kFewestPairs = 8;
   // As if this share of the points held every freedom where it is: what the surface does not fix
   // does not drift.
@@ -67,8 +55,12 @@ void settle_pose(const SurfaceGrid& target,
   const double sigma_m = static_cast<double>(options.sigma_cells) * target.cell_m();
   Moved moved = moved_centre(test, n, R_target_source, t_target_source);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    const PlaneSums sums =
-        accumulate(target, test, n, sigma_m, R_target_source, t_target_source, moved.centre);
+    const PlaneSums sums = pair_and_sum(target,
+                                        all,
+                                        groups,
+                                        {R_target_source, t_target_source},
+                                        {.factor = PairFactor::kGraded, .centre = moved.centre},
+                                        PlaneSummer(PairWeight::kGaussian, sigma_m));
     if (sums.pairs < kFewestPairs) return;
     Matrix6f A = sums.A.cast<float>();
     const float hold = kHold * static_cast<float>(n);

@@ -10,7 +10,7 @@
 namespace landmarkdb {
 
 struct SettleOptions {
-  std::size_t points = 64;  // of the test points
+  std::size_t points = 64;  // of the test points, rounded up to whole groups of 16
   int iterations = 3;
   float sigma_cells = 1.0F;  // as in ScoreOptions
 };

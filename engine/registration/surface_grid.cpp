@@ -94,6 +94,7 @@ SurfaceGrid::SurfaceGrid(std::span<const Eigen::Vector3f> points,
     last = last.cwiseMax(block_of((cell.array() + reach_).matrix()));
   }
   make_table(first, last);
+  blocks_.emplace_back().fill(0);
   surfels_.reserve(points.size() + 1);
   surfels_.push_back({Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()});
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -111,7 +112,7 @@ void SurfaceGrid::make_table(const Cell& first, const Cell& last) {
   if ((size > 0.0).all() && size.prod() <= kMostOfTable) {
     table_first_ = first;
     table_size_ = size.cast<int>().matrix();
-    table_.assign(static_cast<std::size_t>(size.prod()), kNoBlock);
+    table_.assign(1 + static_cast<std::size_t>(size.prod()), kNoBlock);
     return;
   }
   constexpr std::size_t kFirstSlots = 1024;

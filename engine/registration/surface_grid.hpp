@@ -65,6 +65,37 @@ class SurfaceGrid {
   // what they find by its normal and would rather not branch.
   const Surfel& near_or_none(const Eigen::Vector3f& p) const { return surfels_[stored_at(p)]; }
 
+  // The number of the surfel near `p` in the array of a TableView; 0: none.
+  std::uint32_t stored_at(const Eigen::Vector3f& p) const {
+    const Cell cell = cell_of(p);
+    return find_block(block_of(cell))[cell_in_block(cell)];
+  }
+
+  // What loops over many points look cells up in themselves. A point's cell is its coordinates
+  // times inverse_cell, rounded down and at most kFarthestCell from zero; its block is the cell
+  // shifted right by kBlockBits, which is number 1 + x + size.x (y + size.y z) of `block_of`
+  // counted from `first`, and number 0 outside; the cell's surfel is surfels[cells[block *
+  // kBlockCells + low bits of the cell, x fastest]], surfels[0] one without a normal. `block_of` is
+  // null where the blocks are found by hash: there is stored_at() then.
+  struct TableView {
+    const std::uint32_t* block_of;
+    const std::uint32_t* cells;
+    const Surfel* surfels;
+    std::array<int, 3> first, size;
+    float inverse_cell;
+  };
+  TableView table_view() const {
+    return {table_.empty() ? nullptr : table_.data(),
+            blocks_.front().data(),
+            surfels_.data(),
+            {table_first_.x(), table_first_.y(), table_first_.z()},
+            {table_size_.x(), table_size_.y(), table_size_.z()},
+            inverse_cell_};
+  }
+  static constexpr int kBlockBits = 3;
+  static constexpr std::size_t kBlockCells = std::size_t{1} << (3 * kBlockBits);
+  static constexpr float kFarthestCell = (1 << 20) - 16;
+
   float cell_m() const { return cell_m_; }
   // Beyond this distance from the surface near() finds nothing.
   float reach_m() const { return cell_m_ * static_cast<float>(reach_); }
@@ -72,21 +103,16 @@ class SurfaceGrid {
   std::size_t memory_bytes() const;
 
  private:
-  static constexpr int kBlockBits = 3;
-  static constexpr std::size_t kBlockCells = std::size_t{1} << (3 * kBlockBits);
   using Block = std::array<std::uint32_t, kBlockCells>;  // index into surfels_; 0: none
   using Cell = Eigen::Vector3i;
-  static constexpr Block kEmpty{};
-
   static constexpr int kLimit = 1 << 20;  // cells a side: 21 bits and a sign in each key
   static constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
-  static constexpr std::uint32_t kNoBlock = ~std::uint32_t{0};
+  static constexpr std::uint32_t kNoBlock = 0;  // the first block is empty
 
   // Clamped before the cast: a float beyond int is undefined behaviour, and nothing is stored out
   // there. Rounded down without a call, which SSE2 has no instruction for.
   static int cell_on_axis(float scaled) {
-    constexpr auto kFarthest = static_cast<float>(kLimit - 16);
-    const float clamped = std::min(std::max(scaled, -kFarthest), kFarthest);
+    const float clamped = std::min(std::max(scaled, -kFarthestCell), kFarthestCell);
     const int cut = static_cast<int>(clamped);
     return cut - (static_cast<float>(cut) > clamped ? 1 : 0);
   }
@@ -94,10 +120,6 @@ class SurfaceGrid {
     return {cell_on_axis(p.x() * inverse_cell_),
             cell_on_axis(p.y() * inverse_cell_),
             cell_on_axis(p.z() * inverse_cell_)};
-  }
-  std::uint32_t stored_at(const Eigen::Vector3f& p) const {
-    const Cell cell = cell_of(p);
-    return find_block(block_of(cell))[cell_in_block(cell)];
   }
   static Cell block_of(const Cell& cell) {
     return {cell.x() >> kBlockBits, cell.y() >> kBlockBits, cell.z() >> kBlockBits};
@@ -119,21 +141,20 @@ class SurfaceGrid {
     return slot;
   }
   std::size_t table_index(const Cell& at) const {
-    return static_cast<std::size_t>(at.x() + table_size_.x() * (at.y() + table_size_.y() * at.z()));
+    return 1 +
+           static_cast<std::size_t>(at.x() + table_size_.x() * (at.y() + table_size_.y() * at.z()));
   }
-  // The block's cells; an empty block where there is none.
+  // The block's cells; the empty block's where there is none.
   const std::uint32_t* find_block(const Cell& block) const {
     std::uint32_t number = kNoBlock;
     if (!table_.empty()) {
       const Cell at = block - table_first_;
-      if ((at.array() < 0).any() || (at.array() >= table_size_.array()).any()) return kEmpty.data();
-      number = table_[table_index(at)];
-      if (number == kNoBlock) return kEmpty.data();
+      const bool inside = (at.array() >= 0).all() && (at.array() < table_size_.array()).all();
+      number = inside ? table_[table_index(at)] : kNoBlock;
     } else {
       const std::uint64_t key = key_of(block);
       const std::size_t slot = find_slot(key);
-      if (keys_[slot] != key) return kEmpty.data();
-      number = slots_[slot];
+      number = keys_[slot] == key ? slots_[slot] : kNoBlock;
     }
     return blocks_[number].data();
   }
@@ -149,12 +170,12 @@ class SurfaceGrid {
   // Open addressing: keys_[slot] with blocks_[slots_[slot]]; kNoKey marks a free slot.
   std::vector<std::uint64_t> keys_;
   std::vector<std::uint32_t> slots_;
-  // The number of each block of the box from table_first_ on, x fastest, kNoBlock where there is
-  // none; empty where the box is too large.
+  // kNoBlock, then the number of each block of the box from table_first_ on, x fastest, kNoBlock
+  // where there is none; empty where the box is too large.
   std::vector<std::uint32_t> table_;
   Cell table_first_ = Cell::Zero();
   Cell table_size_ = Cell::Zero();
-  std::vector<Block> blocks_;
+  std::vector<Block> blocks_;  // the first is empty
 };
 
 }  // namespace landmarkdb

@@ -16,7 +16,7 @@ constexpr std::size_t kTriedAtLeast = 16;
 // The first test is that of settle_best, the last one finer than its grid's cell, as the pose has
 // been settled by then.
 constexpr std::size_t kFirstPoints = 48;
-constexpr ScoreOptions kFirst{.sigma_cells = 1.0F, .first_look = 12, .hopeless = 0.2F};
+constexpr ScoreOptions kFirst{.sigma_cells = 1.0F, .first_look = 16, .hopeless = 0.2F};
 constexpr std::size_t kLastPoints = 400;
 constexpr ScoreOptions kLast{.sigma_cells = 0.4F, .first_look = kLastPoints, .hopeless = 0.0F};
 

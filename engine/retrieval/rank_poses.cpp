@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/base/parallel.hpp"
 #include "engine/geometry/pose.hpp"
@@ -16,14 +17,43 @@ struct Scored {
   std::uint32_t proposal = 0;
 };
 
-// Scores proposals[which[i]] with `points` test points each.
-std::vector<Scored> score_all(const SurfaceGrid& target,
-                              const TestPoints& test,
-                              std::size_t points,
-                              std::span<const Proposal> proposals,
-                              std::span<const std::uint32_t> which,
-                              const ScoreOptions& score,
-                              const RunContext& context) {
+// Hands scored proposals out best first, sorted only as far as they are asked for.
+class BestFirst {
+ public:
+  explicit BestFirst(std::vector<Scored> scored) : scored_(std::move(scored)) {}
+
+  // Null when all were handed out.
+  const Scored* next() {
+    if (next_ == sorted_) sort_more();
+    return next_ < sorted_ ? &scored_[next_++] : nullptr;
+  }
+
+ private:
+  void sort_more() {
+    constexpr std::size_t kFirst = 4096;
+    const auto better = [](const Scored& a, const Scored& b) {
+      return a.score != b.score ? a.score > b.score : a.proposal < b.proposal;
+    };
+    const auto at = [&](std::size_t i) { return scored_.begin() + static_cast<std::ptrdiff_t>(i); };
+    const std::size_t end = std::min(std::max(kFirst, 2 * sorted_), scored_.size());
+    if (end < scored_.size()) std::nth_element(at(sorted_), at(end), scored_.end(), better);
+    std::sort(at(sorted_), at(end), better);
+    sorted_ = end;
+  }
+
+  std::vector<Scored> scored_;
+  std::size_t sorted_ = 0;
+  std::size_t next_ = 0;
+};
+
+// Scores proposals[which[i]] with `points` test points each; those of no score are left out.
+BestFirst score_all(const SurfaceGrid& target,
+                    const TestPoints& test,
+                    std::size_t points,
+                    std::span<const Proposal> proposals,
+                    std::span<const std::uint32_t> which,
+                    const ScoreOptions& score,
+                    const RunContext& context) {
   std::vector<Scored> scored(which.size());
   parallel_chunks(which.size(), context.threads, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kBetweenChecks = 4096;
@@ -36,10 +66,8 @@ std::vector<Scored> score_all(const SurfaceGrid& target,
           which[i]};
     }
   });
-  std::sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {
-    return a.score != b.score ? a.score > b.score : a.proposal < b.proposal;
-  });
-  return scored;
+  std::erase_if(scored, [](const Scored& one) { return one.score <= 0.0F; });
+  return BestFirst(std::move(scored));
 }
 
 struct GroupLimit {
@@ -51,7 +79,7 @@ struct GroupLimit {
 
 // The best proposals, but only so many of each place: a right pose is proposed hundreds of times,
 // and the look-alike it must be held against has to reach the finer test too.
-std::vector<std::uint32_t> best_of_each_place(std::span<const Scored> sorted,
+std::vector<std::uint32_t> best_of_each_place(BestFirst& scored,
                                               std::span<const Proposal> proposals,
                                               const Eigen::Vector3d& centre,
                                               const GroupLimit& limit) {
@@ -65,9 +93,10 @@ std::vector<std::uint32_t> best_of_each_place(std::span<const Scored> sorted,
   const auto least_trace = static_cast<float>(1.0 + 2.0 * std::cos(limit.apart_rad));
   std::vector<Group> groups;
   std::vector<std::uint32_t> kept;
-  for (const Scored& scored : sorted) {
-    if (kept.size() >= limit.kept || scored.score <= 0.0F) break;
-    const Proposal& proposal = proposals[scored.proposal];
+  while (kept.size() < limit.kept) {
+    const Scored* next = scored.next();
+    if (next == nullptr) break;
+    const Proposal& proposal = proposals[next->proposal];
     const Eigen::Vector3f there = proposal.R_target_source * middle + proposal.t_target_source;
     auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& other) {
       return (other.centre - there).squaredNorm() <= apart * apart &&
@@ -79,7 +108,7 @@ std::vector<std::uint32_t> best_of_each_place(std::span<const Scored> sorted,
     }
     if (group->members >= limit.of_group) continue;
     ++group->members;
-    kept.push_back(scored.proposal);
+    kept.push_back(next->proposal);
   }
   return kept;
 }
@@ -111,14 +140,13 @@ std::vector<Proposal> settle_best(const SurfaceGrid& wide,
                                   const RunContext& context) {
   std::vector<std::uint32_t> all(proposals.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-  const std::vector<Scored> scored =
-      score_all(wide,
-                test,
-                options.first_points,
-                proposals,
-                all,
-                {.first_look = options.first_look, .hopeless = options.hopeless},
-                context);
+  BestFirst scored = score_all(wide,
+                               test,
+                               options.first_points,
+                               proposals,
+                               all,
+                               {.first_look = options.first_look, .hopeless = options.hopeless},
+                               context);
   const std::vector<std::uint32_t> better =
       best_of_each_place(scored,
                          proposals,
@@ -150,7 +178,7 @@ std::vector<RankedPose> rank_poses(const SurfaceGrid& target,
                                    const RunContext& context) {
   std::vector<std::uint32_t> all(proposals.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-  std::vector<Scored> scored = score_all(
+  BestFirst scored = score_all(
       target, test, options.first_points, proposals, all, {.hopeless = options.hopeless}, context);
 
   const std::vector<std::uint32_t> better =
@@ -170,9 +198,10 @@ std::vector<RankedPose> rank_poses(const SurfaceGrid& target,
                      context);
 
   std::vector<RankedPose> ranked;
-  for (const Scored& s : scored) {
-    if (ranked.size() >= options.kept_last || s.score <= 0.0F) break;
-    const Eigen::Isometry3d T = pose_of(proposals[s.proposal]);
+  while (ranked.size() < options.kept_last) {
+    const Scored* next = scored.next();
+    if (next == nullptr) break;
+    const Eigen::Isometry3d T = pose_of(proposals[next->proposal]);
     const bool known = std::any_of(ranked.begin(), ranked.end(), [&](const RankedPose& other) {
       return same_pose(T,
                        other.T_target_source,
@@ -180,7 +209,7 @@ std::vector<RankedPose> rank_poses(const SurfaceGrid& target,
                        options.same_translation_cells * target.cell_m(),
                        options.same_rotation_rad);
     });
-    if (!known) ranked.push_back({T, s.score, proposals[s.proposal].correspondence});
+    if (!known) ranked.push_back({T, next->score, proposals[next->proposal].correspondence});
   }
   return ranked;
 }

@@ -34,7 +34,7 @@ struct SettleBestOptions {
   std::size_t kept_of_group = 8;  // of those, at most so many of one place
   double group_translation_cells = 3.0;
   double group_rotation_rad = 0.175;
-  std::size_t first_look = 12;  // points after which a hopeless proposal is given up
+  std::size_t first_look = 16;  // points after which a hopeless proposal is given up
   float hopeless = 0.2F;
 };
 

@@ -1,0 +1,174 @@
+// No include guard: plane_pairs.cpp includes this once for each instruction set, inside a namespace
+// and under a target pragma. `Floats` and `Ints` are vectors of kLanes numbers that the compiler
+// lowers to what the target has; the operations and their order are the same for all.
+
+#define LANDMARKDB_INLINE [[gnu::always_inline]] inline
+
+LANDMARKDB_INLINE Floats load(const float* p) {
+  Floats v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+
+LANDMARKDB_INLINE void store(float* p, Floats v) { __builtin_memcpy(p, &v, sizeof v); }
+
+LANDMARKDB_INLINE float add_up(Floats v) {
+  float lane[kLanes];
+  __builtin_memcpy(lane, &v, sizeof v);
+  for (std::size_t width = kLanes / 2; width > 0; width /= 2) {
+    for (std::size_t i = 0; i < width; ++i) lane[i] += lane[i + width];
+  }
+  return lane[0];
+}
+
+// exp_of_negative() of engine/base/fast_exp.hpp, sixteen at a time.
+LANDMARKDB_INLINE Floats exponential(Floats x) {
+  const Floats lowest = Floats{} - 87.0F;
+  const Floats y = (x > lowest ? x : lowest) * 1.44269504F;
+  const Ints whole = __builtin_convertvector(y - 0.5F, Ints);
+  const Floats f = (y - __builtin_convertvector(whole, Floats)) * 0.693147181F;
+  Floats p = f * (1.0F / 720.0F) + (1.0F / 120.0F);
+  p = p * f + (1.0F / 24.0F);
+  p = p * f + (1.0F / 6.0F);
+  p = p * f + 0.5F;
+  p = p * f + 1.0F;
+  p = p * f + 1.0F;
+  const Ints bits = (whole + 127) << 23;
+  Floats power;
+  __builtin_memcpy(&power, &bits, sizeof power);
+  return p * power;
+}
+
+struct Met {
+  Floats normal[3];  // of the plane near
+  Floats point[3];   // target frame
+  Floats distance;   // of the point from the plane
+  Floats cosine;     // between the normals
+};
+
+// Rounded down, and clamped as SurfaceGrid::cell_on_axis does.
+LANDMARKDB_INLINE Ints cells_on_axis(Floats scaled) {
+  const Floats far = Floats{} + SurfaceGrid::kFarthestCell;
+  const Floats low = scaled > -far ? scaled : -far;
+  const Floats clamped = low < far ? low : far;
+  const Ints cut = __builtin_convertvector(clamped, Ints);
+  return cut + (__builtin_convertvector(cut, Floats) > clamped);  // true is -1
+}
+
+// The numbers of the surfels near, through the table of blocks.
+LANDMARKDB_INLINE void find_in_table(const SurfaceGrid::TableView& view,
+                                     const Floats* point,
+                                     std::uint32_t* stored) {
+  Ints index = {};
+  Ints inner = {};
+  Ints outside = {};
+  for (int axis = 2; axis >= 0; --axis) {
+    const Ints cell = cells_on_axis(point[axis] * view.inverse_cell);
+    const Ints at = (cell >> SurfaceGrid::kBlockBits) - view.first[axis];
+    outside |= (at < 0) | (at >= view.size[axis]);
+    index = index * view.size[axis] + at;
+    inner = (inner << SurfaceGrid::kBlockBits) | (cell & ((1 << SurfaceGrid::kBlockBits) - 1));
+  }
+  index = outside ? Ints{} : index + 1;
+  std::int32_t entry[kLanes];
+  std::int32_t cell[kLanes];
+  __builtin_memcpy(entry, &index, sizeof entry);
+  __builtin_memcpy(cell, &inner, sizeof cell);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    stored[lane] = view.cells[view.block_of[entry[lane]] * SurfaceGrid::kBlockCells +
+                              static_cast<std::size_t>(cell[lane])];
+  }
+}
+
+LANDMARKDB_INLINE Met meet(const SurfaceGrid& target,
+                           const SurfaceGrid::TableView& view,
+                           const float* group,
+                           const PointMotion& motion) {
+  const float* R = motion.R_target_source.data();  // column by column
+  const float* t = motion.t_target_source.data();
+  const Floats x = load(group), y = load(group + kLanes), z = load(group + 2 * kLanes);
+  const Floats u = load(group + 3 * kLanes), v = load(group + 4 * kLanes),
+               w = load(group + 5 * kLanes);
+  Met met;
+  Floats turned[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    met.point[axis] = R[axis] * x + R[axis + 3] * y + R[axis + 6] * z + t[axis];
+    turned[axis] = R[axis] * u + R[axis + 3] * v + R[axis + 6] * w;
+  }
+  std::uint32_t stored[kLanes];
+  if (view.block_of != nullptr) {
+    find_in_table(view, met.point, stored);
+  } else {
+    float p[3][kLanes];
+    for (int axis = 0; axis < 3; ++axis) store(p[axis], met.point[axis]);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      stored[lane] = target.stored_at({p[0][lane], p[1][lane], p[2][lane]});
+    }
+  }
+  float near[6][kLanes];
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const Surfel& surfel = view.surfels[stored[lane]];
+    for (int axis = 0; axis < 3; ++axis) {
+      near[axis][lane] = surfel.point.data()[axis];
+      near[axis + 3][lane] = surfel.normal.data()[axis];
+    }
+  }
+  met.distance = Floats{};
+  met.cosine = Floats{};
+  for (int axis = 0; axis < 3; ++axis) {
+    met.normal[axis] = load(near[axis + 3]);
+    met.distance += met.normal[axis] * (met.point[axis] - load(near[axis]));
+    met.cosine += met.normal[axis] * turned[axis];
+  }
+  return met;
+}
+
+void pair(const SurfaceGrid& target,
+          const float* group,
+          std::size_t groups,
+          const PointMotion& motion,
+          const PairOptions& options,
+          float* values) {
+  const SurfaceGrid::TableView view = target.table_view();
+  const Floats zero = {};
+  const Floats one = zero + 1.0F;
+  const bool graded = options.factor == PairFactor::kGraded;
+  for (std::size_t g = 0; g < groups; ++g) {
+    const Met met = meet(target, view, group + g * kLanes * PointGroups::kNumbers, motion);
+    for (int axis = 0; axis < 3; ++axis) {
+      store(values, met.normal[axis]);
+      store(values + 3 * kLanes, met.point[axis] - options.centre.data()[axis]);
+      values += kLanes;
+    }
+    store(values + 3 * kLanes, met.distance);
+    store(values + 4 * kLanes,
+          graded ? (met.cosine > zero ? met.cosine : zero)
+                 : (met.cosine >= options.min_agreement ? one : zero));
+    values += 5 * kLanes;
+  }
+}
+
+float mean_fit(const SurfaceGrid& target,
+               const float* group,
+               std::size_t groups,
+               std::size_t points,
+               const PointMotion& motion,
+               const FitOptions& options) {
+  const SurfaceGrid::TableView view = target.table_view();
+  const Floats zero = {};
+  Floats sums = {};
+  for (std::size_t g = 0; g < groups; ++g) {
+    if (g == options.first_groups) {
+      const float mean = add_up(sums) / static_cast<float>(g * kLanes);
+      if (mean < options.hopeless) return mean - 1.0F;
+    }
+    const Met met = meet(target, view, group + g * kLanes * PointGroups::kNumbers, motion);
+    const Floats agreement = met.cosine > zero ? met.cosine : zero;
+    sums += agreement * exponential(options.factor * met.distance * met.distance);
+  }
+  return add_up(sums) / static_cast<float>(points);
+}
+
+constexpr PairKernels kKernels{pair, mean_fit};
+
+#undef LANDMARKDB_INLINE
