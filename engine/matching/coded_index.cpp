@@ -1,6 +1,7 @@
 #include "engine/matching/coded_index.hpp"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -44,9 +45,43 @@ std::int32_t score_of(Candidate candidate) {
 }
 std::uint32_t row_of(Candidate candidate) { return ~static_cast<std::uint32_t>(candidate); }
 
-// Brings the `most` best to the front.
+// The candidate in the middle of a few spread over the range.
+Candidate middle_of(std::span<const Candidate> range) {
+  constexpr std::size_t kSampled = 9;
+  std::array<Candidate, kSampled> sample{};
+  for (std::size_t i = 0; i < kSampled; ++i)
+    sample[i] = range[i * (range.size() - 1) / (kSampled - 1)];
+  std::nth_element(sample.begin(), sample.begin() + kSampled / 2, sample.end());
+  return sample[kSampled / 2];
+}
+
+// Those above `pivot` ahead of the others; how many there are. Without a branch on what they are,
+// of which half would be mispredicted.
+std::size_t part(std::span<Candidate> range, Candidate pivot) {
+  std::size_t above = 0;
+  for (Candidate& candidate : range) {
+    const Candidate here = candidate;
+    candidate = range[above];
+    range[above] = here;
+    above += here > pivot ? 1U : 0U;
+  }
+  return above;
+}
+
+// Brings the `most` best to the front, in no order. No two candidates are the same.
 void put_best_ahead(std::span<Candidate> candidates, std::size_t most) {
   if (most == 0 || candidates.size() <= most) return;
+  constexpr std::size_t kFew = 32;
+  while (candidates.size() > kFew) {
+    const std::size_t above = part(candidates, middle_of(candidates));
+    if (above == most) return;
+    if (above > most) {
+      candidates = candidates.first(above);
+    } else {
+      candidates = candidates.subspan(above);
+      most -= above;
+    }
+  }
   std::nth_element(candidates.begin(),
                    candidates.begin() + static_cast<std::ptrdiff_t>(most) - 1,
                    candidates.end(),
@@ -73,7 +108,7 @@ class Shortlist {
   std::int32_t floor() const { return floor_; }
   void offer(Candidate candidate) {
     candidates_.push_back(candidate);
-    if (candidates_.size() >= 2 * most_) prune();
+    if (candidates_.size() >= most_ + std::max(most_, kSpare)) prune();
   }
   // The best, in no order, for the caller to change.
   std::span<Candidate> best() {
@@ -85,8 +120,12 @@ class Shortlist {
   void prune() {
     put_best_ahead(candidates_, most_);
     candidates_.resize(most_);
-    floor_ = score_of(candidates_.back()) - 1;  // one as high may still have a lower row
+    const Candidate worst = *std::min_element(candidates_.begin(), candidates_.end());
+    floor_ = score_of(worst) - 1;  // one as high may still have a lower row
   }
+
+  // Choosing among a few more at once costs less than choosing more often.
+  static constexpr std::size_t kSpare = 1024;
 
   std::size_t most_ = 1;
   std::int32_t floor_ = PackedCodes::kNoCode;

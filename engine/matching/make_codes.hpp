@@ -25,6 +25,11 @@ RowCodes code_rows(std::span<const float> values, const RunContext& context);
 // for any `context.threads`. Throws like code_rows. Cost: N^2 / 64 comparisons of codes a round.
 DescriptorCodes make_codes(std::span<const float> values, const RunContext& context);
 
+// The same codes in lists of consecutive rows, for an index of which every list is read: a small
+// part of the work. The same bytes on every machine and for any `context.threads`. Throws like
+// code_rows.
+DescriptorCodes make_codes_in_order(std::span<const float> values, const RunContext& context);
+
 // The dissimilarity in terms of Measure::kL2 for the squared distance of two codes with their
 // tails.
 float dissimilarity_of_codes(std::int32_t squared_distance);

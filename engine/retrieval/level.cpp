@@ -41,23 +41,27 @@ DescriptorCodes blank_codes(std::size_t rows) {
   return codes;
 }
 
-DescriptorCodes codes_of(const Entry& entry, const RunContext& context) {
+// In lists of what is alike, or, to be scanned, in order.
+DescriptorCodes codes_of(const Entry& entry, bool scanned, const RunContext& context) {
   const std::size_t rows = rows_of(entry);
-  if (entry.stored.source != nullptr) {
+  if (!scanned && entry.stored.source != nullptr) {
     const std::optional<SceneIndexBlob> stored = entry.stored.source->index(context);
     std::optional<DescriptorCodes> codes = stored ? codes_from(*stored, rows) : std::nullopt;
     if (codes) return *std::move(codes);
   }
   std::shared_ptr<const SceneRecord> held;
   const std::span<const float> values = values_of(entry, context, held);
-  return values.size() == rows * kShotLength ? make_codes(values, context) : blank_codes(rows);
+  if (values.size() != rows * kShotLength) return blank_codes(rows);
+  return scanned ? make_codes_in_order(values, context) : make_codes(values, context);
 }
 
 // Side by side, each by one thread, and a few at a time, so that progress is told between them.
 std::vector<DescriptorCodes> all_codes(const Entries& entries,
                                        std::span<const std::size_t> chosen,
+                                       bool scanned,
                                        const RunContext& context) {
   constexpr std::size_t kAtATime = 64;
+  if (chosen.size() == 1) return {codes_of(entries[chosen[0]], scanned, context)};
   RunContext alone = context;
   alone.threads = 1;
   alone.progress = nullptr;
@@ -67,11 +71,17 @@ std::vector<DescriptorCodes> all_codes(const Entries& entries,
     const std::size_t count = std::min(kAtATime, chosen.size() - first);
     parallel_chunks(count, context.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = first + begin; i < first + end; ++i) {
-        codes[i] = codes_of(entries[chosen[i]], alone);
+        codes[i] = codes_of(entries[chosen[i]], scanned, alone);
       }
     });
   }
   return codes;
+}
+
+// Many neighbours are asked for, and what proposes a pose need not be the very nearest: with 8
+// tails read a neighbour, and 256 more, nothing else was found at twice the time.
+CodedSearchOptions scan_options() {
+  return {.list_share = 1.0, .refined = 64, .refined_a_neighbour = 4.0};
 }
 
 }  // namespace
@@ -108,22 +118,18 @@ std::vector<float> level_values(const Entries& entries,
 Level make_level(const Entries& entries,
                  std::span<const std::size_t> chosen,
                  const RunContext& context,
-                 std::size_t most_exact_rows) {
-  Level level{.options = {}, .entries = {}, .first_row = {0}, .index = {}, .coded = false};
+                 std::size_t most_scanned_rows) {
+  Level level{.options = {}, .entries = {}, .first_row = {0}, .index = {}};
   for (const std::size_t entry : chosen) {
     level.options = entries[entry].record().options;
     level.entries.push_back(entry);
     level.first_row.push_back(level.first_row.back() + rows_of(entries[entry]));
   }
-  level.coded = level.rows() > most_exact_rows;
-  if (level.coded) {
-    const std::vector<DescriptorCodes> codes = all_codes(entries, chosen, context);
-    std::vector<CodedPart> parts;
-    for (const DescriptorCodes& one : codes) parts.push_back({{}, &one});
-    level.index = make_coded_index(parts);
-  } else {
-    level.index = make_exact_index(level_values(entries, chosen, context), Measure::kL2);
-  }
+  level.scanned = level.rows() <= most_scanned_rows;
+  const std::vector<DescriptorCodes> codes = all_codes(entries, chosen, level.scanned, context);
+  std::vector<CodedPart> parts;
+  for (const DescriptorCodes& one : codes) parts.push_back({{}, &one});
+  level.index = make_coded_index(parts, level.scanned ? scan_options() : CodedSearchOptions{});
   return level;
 }
 
@@ -144,11 +150,11 @@ std::vector<std::vector<std::size_t>> group_places(const Entries& entries) {
 
 std::vector<Level> make_levels(const Entries& entries,
                                const RunContext& context,
-                               std::size_t most_exact_rows) {
+                               std::size_t most_scanned_rows) {
   std::vector<Level> levels;
   for (const std::vector<std::size_t>& group : group_places(entries)) {
     context.check("index");
-    levels.push_back(make_level(entries, group, context, most_exact_rows));
+    levels.push_back(make_level(entries, group, context, most_scanned_rows));
   }
   return levels;
 }

@@ -4,6 +4,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "engine/matching/descriptor_rows.hpp"
+#include "engine/matching/measures.hpp"
 #include "engine/retrieval/hypothesis.hpp"
 
 namespace landmarkdb {
@@ -93,6 +95,19 @@ void cut_to_size(const std::vector<std::uint32_t>& ranks, CorrespondenceList& li
   list.records = std::move(records);
 }
 
+// A level's own distances are those of codes: of what is listed the true ones are told, where both
+// descriptors are in memory.
+float distance_of(const Correspondence& pair,
+                  const EntryMatches& matches,
+                  const Entry& entry,
+                  Measure measure) {
+  const DescriptorSet& stored = entry.record().descriptors;
+  if (measure != Measure::kL2 || stored.values.empty()) return pair.distance;
+  return dissimilarity(Measure::kL2,
+                       descriptor_row(matches.view->descriptors.values, pair.query),
+                       descriptor_row(stored.values, pair.target));
+}
+
 }  // namespace
 
 CorrespondenceList list_correspondences(const Verdict& verdict,
@@ -115,7 +130,7 @@ CorrespondenceList list_correspondences(const Verdict& verdict,
     row.sensor_m =
         matches->view->descriptors.keypoints[pair.query] + input.query.cloud.origin.cast<float>();
     row.scene_m = record.descriptors.keypoints[pair.target].cast<double>() + record.prepared.origin;
-    row.distance = pair.distance;
+    row.distance = distance_of(pair, *matches, entry, input.options.measure);
     if (!matches->dropped_by.empty() && *matches->dropped_by[i] != '\0') {
       row.dropped_by = matches->dropped_by[i];
     } else if (!std::binary_search(inliers.begin(), inliers.end(), i)) {

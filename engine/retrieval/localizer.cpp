@@ -182,8 +182,8 @@ void for_each_entry(std::span<const std::size_t> which,
   }
 }
 
-// The entries that are kept whole: objects, and the places of levels that are searched exactly.
-std::vector<std::size_t> kept_whole(const Entries& entries, std::size_t most_exact_rows) {
+// The entries that are kept whole: objects, and the places of levels that are scanned.
+std::vector<std::size_t> kept_whole(const Entries& entries, std::size_t most_scanned_rows) {
   std::vector<std::size_t> whole;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (entries[i].is_object()) whole.push_back(i);
@@ -191,7 +191,7 @@ std::vector<std::size_t> kept_whole(const Entries& entries, std::size_t most_exa
   for (const std::vector<std::size_t>& group : group_places(entries)) {
     std::size_t rows = 0;
     for (const std::size_t i : group) rows += rows_of(entries[i]);
-    if (rows <= most_exact_rows) whole.insert(whole.end(), group.begin(), group.end());
+    if (rows <= most_scanned_rows) whole.insert(whole.end(), group.begin(), group.end());
   }
   std::sort(whole.begin(), whole.end());
   return whole;
@@ -204,7 +204,7 @@ struct Base {
   std::vector<std::string> damage;  // of each entry; empty where it is sound
 };
 
-Base make_base(const Catalog& catalog, std::size_t most_exact_rows, const RunContext& context) {
+Base make_base(const Catalog& catalog, std::size_t most_scanned_rows, const RunContext& context) {
   Base base;
   base.damage.resize(catalog.entries.size());
   std::vector<std::size_t> in_memory;
@@ -217,7 +217,7 @@ Base make_base(const Catalog& catalog, std::size_t most_exact_rows, const RunCon
   });
   EntryCache outlines(base.entries, 0);
   std::vector<bool> whole(catalog.entries.size(), false);
-  for (const std::size_t i : kept_whole(Entries(outlines), most_exact_rows)) whole[i] = true;
+  for (const std::size_t i : kept_whole(Entries(outlines), most_scanned_rows)) whole[i] = true;
   std::vector<std::size_t> to_read;
   for (std::size_t i = 0; i < catalog.entries.size(); ++i) {
     if (catalog.entries[i].source != nullptr) to_read.push_back(i);
@@ -248,9 +248,9 @@ Localizer::Localizer(std::shared_ptr<const Catalog> catalog,
                      const LocalizerOptions& options) {
   auto state = std::make_unique<State>();
   state->catalog = std::move(catalog);
-  const std::size_t most_exact_rows =
-      options.most_exact_rows > 0 ? options.most_exact_rows : kMostExactRows;
-  Base base = make_base(*state->catalog, most_exact_rows, context);
+  const std::size_t most_scanned_rows =
+      options.most_scanned_rows > 0 ? options.most_scanned_rows : kMostScannedRows;
+  Base base = make_base(*state->catalog, most_scanned_rows, context);
   state->entries = std::make_unique<EntryCache>(
       std::move(base.entries), options.scene_memory_bytes, options.on_damaged);
   for (std::size_t i = 0; i < base.damage.size(); ++i) {
@@ -260,7 +260,7 @@ Localizer::Localizer(std::shared_ptr<const Catalog> catalog,
       ++state->on_demand;
     }
   }
-  state->levels = make_levels(Entries(*state->entries), context, most_exact_rows);
+  state->levels = make_levels(Entries(*state->entries), context, most_scanned_rows);
   state_ = std::move(state);
 }
 

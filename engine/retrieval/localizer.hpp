@@ -19,8 +19,8 @@ namespace landmarkdb {
 struct LocalizerOptions {
   // Of scenes that have a source and are too many to be kept whole, what was loaded for queries.
   std::size_t scene_memory_bytes = std::size_t{1} << 30U;
-  // Levels of more rows are searched by codes (level.hpp); 0: the usual number.
-  std::size_t most_exact_rows = 0;
+  // Levels of more rows are searched by their nearest lists (level.hpp); 0: the usual number.
+  std::size_t most_scanned_rows = 0;
   // Called once for each scene that turns out to be damaged when it is read; may be empty.
   std::function<void(const CatalogEntry&, const std::string&)> on_damaged{};
 };

@@ -47,6 +47,20 @@ TEST(MakeCodes, PutsEachRowIntoOneListWithItsOwnCodeAndTail) {
   }
 }
 
+TEST(MakeCodesInOrder, HoldsTheSameCodesInTheOrderOfTheRows) {
+  const std::vector<float> values = random_descriptors(5000, 9, 1);
+  RunContext three;
+  three.threads = 3;
+  const DescriptorCodes codes = make_codes_in_order(values, three);
+  const RowCodes rows = code_rows(values, {});
+  EXPECT_EQ(fault_of_codes(codes, 5000), "");
+  EXPECT_EQ(codes.codes, rows.codes);
+  EXPECT_EQ(codes.tails, rows.tails);
+  EXPECT_TRUE(std::is_sorted(codes.rows.begin(), codes.rows.end()));
+  EXPECT_GT(codes.lists(), 1U);
+  EXPECT_EQ(fault_of_codes(make_codes_in_order({}, {}), 0), "");
+}
+
 TEST(MakeCodes, KeepsWhatIsAlikeTogether) {
   // Eight clusters in a list each, or in a few: rows of one list are nearer than others.
   const std::vector<float> values = random_descriptors(512, 8, 2);

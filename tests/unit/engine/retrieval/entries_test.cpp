@@ -39,10 +39,11 @@ class OnDemand : public ::testing::Test {
 };
 
 TEST_F(OnDemand, AnswersAsIfAllWereInMemoryWhateverIsKept) {
-  const QueryResult want = ask(Localizer(in_memory, {}, {.most_exact_rows = 1}));
+  const QueryResult want = ask(Localizer(in_memory, {}, {.most_scanned_rows = 1}));
   ASSERT_FALSE(want.hypotheses.empty());
   for (const std::size_t bytes : {std::size_t{0}, std::size_t{1} << 30U}) {
-    const Localizer localizer(on_shelves, {}, {.scene_memory_bytes = bytes, .most_exact_rows = 1});
+    const Localizer localizer(
+        on_shelves, {}, {.scene_memory_bytes = bytes, .most_scanned_rows = 1});
     EXPECT_EQ(localizer.loaded().scenes, 2U);
     for (int turn = 0; turn < 2; ++turn) {
       const QueryResult got = ask(localizer);
@@ -56,7 +57,7 @@ TEST_F(OnDemand, AnswersAsIfAllWereInMemoryWhateverIsKept) {
 }
 
 TEST_F(OnDemand, ASceneThatTurnsOutDamagedHarmsNoOther) {
-  const Localizer localizer(on_shelves, {}, {.most_exact_rows = 1});
+  const Localizer localizer(on_shelves, {}, {.most_scanned_rows = 1});
   shelves[1]->damaged = true;
   const QueryResult got = ask(localizer);
   ASSERT_FALSE(got.hypotheses.empty());
@@ -93,7 +94,7 @@ TEST_F(OnDemand, ThePaperSearchesWhatIsNotInMemory) {
   const PointCloud cloud = testing::frame_in(testing::small_room(2), 1).cloud;
   const QueryResult want = Localizer(in_memory, {}).query(cloud, options, {});
   const QueryResult got =
-      Localizer(on_shelves, {}, {.most_exact_rows = 1}).query(cloud, options, {});
+      Localizer(on_shelves, {}, {.most_scanned_rows = 1}).query(cloud, options, {});
   EXPECT_EQ(got.status, want.status);
   ASSERT_EQ(got.hypotheses.size(), want.hypotheses.size());
   for (std::size_t i = 0; i < got.hypotheses.size(); ++i) {
