@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
+#include "engine/cloud/sort_by_key.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -19,39 +20,22 @@ using Cell = std::array<std::int64_t, 3>;
 constexpr std::size_t kStep = 65'536;    // points between two looks at the stop token
 constexpr double kLargestCell = 0x1p62;  // keeps differences of cell numbers inside 64 bits
 
-struct Keyed {
-  std::uint64_t key;
-  std::uint32_t index;
-};
+[[noreturn]] void refuse(double cells_per_m, float coordinate) {
+  throw Error(ErrorCode::kInvalidArgument,
+              "voxel size of " + std::to_string(1.0 / cells_per_m) +
+                  " m: too small for points as far out as " + std::to_string(coordinate) + " m");
+}
 
+// Rounded down without a call, which SSE2 has no instruction for.
 Cell cell_of(const Eigen::Vector3f& p, double cells_per_m) {
   Cell cell{};
   for (int axis = 0; axis < 3; ++axis) {
-    const double number = std::floor(static_cast<double>(p[axis]) * cells_per_m);
-    if (!(std::abs(number) < kLargestCell)) {
-      throw Error(ErrorCode::kInvalidArgument,
-                  "voxel size of " + std::to_string(1.0 / cells_per_m) +
-                      " m: too small for points as far out as " + std::to_string(p[axis]) + " m");
-    }
-    cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(number);
+    const double number = static_cast<double>(p[axis]) * cells_per_m;
+    if (!(std::abs(number) < kLargestCell)) refuse(cells_per_m, p[axis]);
+    const auto cut = static_cast<std::int64_t>(number);
+    cell[static_cast<std::size_t>(axis)] = cut - (static_cast<double>(cut) > number ? 1 : 0);
   }
   return cell;
-}
-
-// Least significant digit first; stable, so points of one key keep their order.
-void radix_sort(std::vector<Keyed>& items, int bits, const RunContext& context) {
-  constexpr int kDigitBits = 11;  // 2,048 counters stay in the first-level cache
-  constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
-  std::vector<Keyed> other(items.size());
-  for (int shift = 0; shift < bits; shift += kDigitBits) {
-    context.check("voxels");
-    std::array<std::uint32_t, kDigits + 1> start{};
-    auto digit = [shift](const Keyed& item) { return (item.key >> shift) & (kDigits - 1); };
-    for (const Keyed& item : items) ++start[digit(item) + 1];
-    for (std::size_t d = 1; d <= kDigits; ++d) start[d] += start[d - 1];
-    for (const Keyed& item : items) other[start[digit(item)]++] = item;
-    items.swap(other);
-  }
 }
 
 struct Bounds {
@@ -94,7 +78,7 @@ std::vector<std::uint32_t> order_by_key(std::span<const Eigen::Vector3f> points,
     if (shift_z < 64) key |= from_low(2) << shift_z;
     items.push_back({key, i});
   }
-  radix_sort(items, shift_z + bounds.bits(2), context);
+  sort_by_key(items, context);
   for (std::size_t k = 0; k < items.size(); ++k) finite[k] = items[k].index;
   return finite;
 }

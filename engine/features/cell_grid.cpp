@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "engine/base/error.hpp"
+#include "engine/cloud/sort_by_key.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -68,12 +68,12 @@ CellGrid::CellGrid(std::span<const Eigen::Vector3f> points, double cell_m) : cel
   CellKeys cells = make_cell_keys(points, cell_m);
   min_ = cells.min;
   last_ = cells.last;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;
+  std::vector<Keyed> sorted;
   sorted.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    sorted.emplace_back(cells.keys[i], static_cast<std::uint32_t>(i));
+    sorted.push_back({cells.keys[i], static_cast<std::uint32_t>(i)});
   }
-  std::sort(sorted.begin(), sorted.end());
+  sort_by_key(sorted);
   order_.reserve(points.size());
   x_.reserve(points.size());
   y_.reserve(points.size());

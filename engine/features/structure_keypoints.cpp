@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "engine/base/parallel.hpp"
+#include "engine/cloud/sort_by_key.hpp"
 #include "engine/features/cell_grid.hpp"
 
 namespace landmarkdb {
@@ -23,32 +24,28 @@ float second_eigenvalue(const Eigen::Matrix3d& scatter) {
 
 Keypoints uniform_keypoints(const PreparedCloud& cloud, double spacing_m) {
   const CellKeys cells = make_cell_keys(cloud.points, spacing_m);
-  struct Candidate {
-    std::uint64_t key;
-    double squared_distance;
-    std::uint32_t index;
-  };
-  std::vector<Candidate> candidates;
-  candidates.reserve(cloud.size());
+  std::vector<Keyed> sorted;
+  sorted.reserve(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const auto [x, y, z] = unpack_cell(cells.keys[i]);
+    sorted.push_back({cells.keys[i], static_cast<std::uint32_t>(i)});
+  }
+  sort_by_key(sorted);
+  Keypoints result;
+  double least = 0.0;
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    const auto [x, y, z] = unpack_cell(sorted[k].key);
     const Eigen::Vector3d middle(
         static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, static_cast<double>(z) + 0.5);
     const Eigen::Vector3d centre = cells.min + middle * spacing_m;
-    candidates.push_back({cells.keys[i],
-                          (cloud.points[i].cast<double>() - centre).squaredNorm(),
-                          static_cast<std::uint32_t>(i)});
-  }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    if (a.key != b.key) return a.key < b.key;
-    if (a.squared_distance != b.squared_distance) return a.squared_distance < b.squared_distance;
-    return a.index < b.index;
-  });
-  Keypoints result;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (i == 0 || candidates[i].key != candidates[i - 1].key) {
-      result.index.push_back(candidates[i].index);
+    const double squared = (cloud.points[sorted[k].index].cast<double>() - centre).squaredNorm();
+    if (k == 0 || sorted[k].key != sorted[k - 1].key) {
+      result.index.push_back(sorted[k].index);
+    } else if (squared < least) {
+      result.index.back() = sorted[k].index;
+    } else {
+      continue;
     }
+    least = squared;
   }
   std::sort(result.index.begin(), result.index.end());
   return result;

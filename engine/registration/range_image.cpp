@@ -188,14 +188,15 @@ bool RangeImage::in_view(const Eigen::Vector3f& centre, float radius_m) const {
   return reach >= std::numbers::pi_v<float> || cone_axis_.dot(centre) >= std::cos(reach) * distance;
 }
 
-std::vector<RangeImage::Predicted> RangeImage::render(const SightSurface& surface,
-                                                      const Eigen::Isometry3d& T_here_surface,
-                                                      float patch_m) const {
+RangeImage::Rendered RangeImage::render(const SightSurface& surface,
+                                        const Eigen::Isometry3d& T_here_surface,
+                                        float patch_m) const {
   const Eigen::Matrix3f R = T_here_surface.linear().cast<float>();
   const Eigen::Vector3f t = T_here_surface.translation().cast<float>() - viewpoint_;
   const float reach = 2.0F * max_range_m_;  // what lies further could only be hidden
   const float half_patch_cells = 0.5F * patch_m / static_cast<float>(step_rad_);
-  std::vector<Predicted> predicted(inner_.size(), {kInfinity, false});
+  Rendered rendered;
+  rendered.predicted.assign(inner_.size(), {kInfinity, false});
   for (const SightSurface::Block& block : surface.blocks()) {
     if (!in_view(R * block.centre + t, block.radius_m)) continue;
     for (std::uint32_t i = block.begin; i < block.end; ++i) {
@@ -206,69 +207,93 @@ std::vector<RangeImage::Predicted> RangeImage::render(const SightSurface& surfac
       const Place place = place_of(ray);
       const int half = static_cast<int>(
           std::min(static_cast<float>(kWidestPatch), half_patch_cells / range + 0.5F));
-      lay_patch(place, half, {range, back}, predicted);
+      lay_patch(place, half, {range, back}, rendered);
     }
   }
-  return predicted;
+  return rendered;
 }
 
 void RangeImage::lay_patch(const Place& place,
                            int half,
                            const Predicted& patch,
-                           std::vector<Predicted>& predicted) const {
+                           Rendered& rendered) const {
+  const int first_row = std::max(0, place.row - half);
   const int last_row = std::min(side_ - 1, place.row + half);
   const int first_column = std::max(0, place.column - half);
   const int last_column = std::min(side_ - 1, place.column + half);
-  for (int row = std::max(0, place.row - half); row <= last_row; ++row) {
+  Box& box = rendered.boxes[static_cast<std::size_t>(place.face)];
+  box.first_row = std::min(box.first_row, first_row);
+  box.last_row = std::max(box.last_row, last_row);
+  box.first_column = std::min(box.first_column, first_column);
+  box.last_column = std::max(box.last_column, last_column);
+  for (int row = first_row; row <= last_row; ++row) {
     const std::size_t begin = index_of({place.face, row, 0});
     for (int column = first_column; column <= last_column; ++column) {
       const std::uint32_t inner = inner_of_cell_[begin + static_cast<std::size_t>(column)];
       if (inner == kOuter) continue;
-      Predicted& nearest = predicted[inner];
+      Predicted& nearest = rendered.predicted[inner];
       if (patch.range < nearest.range) nearest = patch;
     }
   }
 }
 
-// Calls `visit` with the number of each of the up to eight around inner_[inner] that are compared.
+// Calls `visit` with the number, ascending, and the place of each cell in the boxes that is
+// compared.
 template <typename Visit>
-void RangeImage::visit_around(std::size_t inner, const Visit& visit) const {
-  const Place place = place_at(inner_[inner]);
-  const int last_row = std::min(side_ - 1, place.row + 1);
-  const int last_column = std::min(side_ - 1, place.column + 1);
-  for (int row = std::max(0, place.row - 1); row <= last_row; ++row) {
-    for (int column = std::max(0, place.column - 1); column <= last_column; ++column) {
-      const std::uint32_t beside = inner_of_cell_[index_of({place.face, row, column})];
-      if (beside != kOuter && beside != inner) visit(beside);
+void RangeImage::visit_inner(const std::array<Box, 6>& boxes, const Visit& visit) const {
+  for (int face = 0; face < 6; ++face) {
+    const Box& box = boxes[static_cast<std::size_t>(face)];
+    for (int row = box.first_row; row <= box.last_row; ++row) {
+      for (int column = box.first_column; column <= box.last_column; ++column) {
+        const Place place{face, row, column};
+        const std::uint32_t inner = inner_of_cell_[index_of(place)];
+        if (inner != kOuter) visit(inner, place);
+      }
     }
   }
 }
 
-void RangeImage::fill_gaps(std::vector<Predicted>& predicted) const {
+// Calls `visit` with the number of each of the up to eight around `place` that are compared.
+template <typename Visit>
+void RangeImage::visit_around(const Place& place, const Visit& visit) const {
+  const int last_row = std::min(side_ - 1, place.row + 1);
+  const int last_column = std::min(side_ - 1, place.column + 1);
+  for (int row = std::max(0, place.row - 1); row <= last_row; ++row) {
+    for (int column = std::max(0, place.column - 1); column <= last_column; ++column) {
+      if (row == place.row && column == place.column) continue;
+      const std::uint32_t beside = inner_of_cell_[index_of({place.face, row, column})];
+      if (beside != kOuter) visit(beside);
+    }
+  }
+}
+
+void RangeImage::fill_gaps(Rendered& rendered) const {
   constexpr int kEnough = 5;  // of the eight around: beyond a straight edge there are three
+  std::vector<Predicted>& predicted = rendered.predicted;
   std::vector<std::pair<std::size_t, Predicted>> filled;
-  for (std::size_t i = 0; i < predicted.size(); ++i) {
-    if (predicted[i].range != kInfinity) continue;
+  visit_inner(rendered.boxes, [&](std::uint32_t i, const Place& place) {
+    if (predicted[i].range != kInfinity) return;
     int around = 0;
     Predicted furthest{0.0F, false};
-    visit_around(i, [&](std::uint32_t beside) {
+    visit_around(place, [&](std::uint32_t beside) {
       if (predicted[beside].range == kInfinity) return;
       ++around;
       if (predicted[beside].range > furthest.range) furthest = predicted[beside];
     });
     if (around >= kEnough) filled.emplace_back(i, furthest);
-  }
+  });
   for (const auto& [i, patch] : filled) predicted[i] = patch;
 }
 
-std::size_t RangeImage::solid(const std::vector<signed char>& says) const {
+std::size_t RangeImage::solid(const std::array<Box, 6>& boxes,
+                              const std::vector<signed char>& says) const {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < says.size(); ++i) {
-    if (says[i] >= 0) continue;
+  visit_inner(boxes, [&](std::uint32_t i, const Place& place) {
+    if (says[i] >= 0) return;
     bool alone = true;
-    visit_around(i, [&](std::uint32_t beside) { alone = alone && says[beside] <= 0; });
+    visit_around(place, [&](std::uint32_t beside) { alone = alone && says[beside] <= 0; });
     count += alone ? 1U : 0U;
-  }
+  });
   return count;
 }
 
@@ -284,13 +309,14 @@ SightCounts RangeImage::compare(const SightSurface& surface,
                                 const Eigen::Isometry3d& T_here_surface,
                                 float patch_m,
                                 const SightTolerance& tolerance) const {
-  std::vector<Predicted> predicted = render(surface, T_here_surface, patch_m);
-  fill_gaps(predicted);
+  Rendered rendered = render(surface, T_here_surface, patch_m);
+  fill_gaps(rendered);
+  const std::vector<Predicted>& predicted = rendered.predicted;
   SightCounts counts;
   counts.measured = inner_.size();
   std::vector<signed char> says(inner_.size(), 0);  // 1: agrees, -1: contradicts, 0: nothing
-  for (std::size_t i = 0; i < inner_.size(); ++i) {
-    if (predicted[i].range == kInfinity) continue;
+  visit_inner(rendered.boxes, [&](std::uint32_t i, const Place&) {
+    if (predicted[i].range == kInfinity) return;
     const Cell& wide = widened_[inner_[i]];
     const bool front = !predicted[i].back;
     const float slack = tolerance.metres + tolerance.share * wide.furthest;
@@ -304,8 +330,8 @@ SightCounts RangeImage::compare(const SightSurface& surface,
       ++counts.hidden;
       says[i] = -1;
     }
-  }
-  counts.solid = solid(says);
+  });
+  counts.solid = solid(rendered.boxes, says);
   return counts;
 }
 
@@ -314,7 +340,8 @@ OutlineCounts RangeImage::outline(const SightSurface& surface,
                                   float patch_m,
                                   const SightTolerance& tolerance) const {
   constexpr int kBeyond = 2;  // cells: the next may show the object's own edge
-  const std::vector<Predicted> predicted = render(surface, T_here_surface, patch_m);
+  const Rendered rendered = render(surface, T_here_surface, patch_m);
+  const std::vector<Predicted>& predicted = rendered.predicted;
   const auto range_at = [&](const Place& place) {
     if (place.row < 0 || place.row >= side_ || place.column < 0 || place.column >= side_) {
       return -1.0F;
@@ -323,13 +350,12 @@ OutlineCounts RangeImage::outline(const SightSurface& surface,
     return inner == kOuter ? -1.0F : predicted[inner].range;
   };
   OutlineCounts counts;
-  for (std::size_t i = 0; i < inner_.size(); ++i) {
+  visit_inner(rendered.boxes, [&](std::uint32_t i, const Place& place) {
     const float range = predicted[i].range;
-    if (range == kInfinity || predicted[i].back) continue;
+    if (range == kInfinity || predicted[i].back) return;
     const Cell& wide = widened_[inner_[i]];
     const float slack = tolerance.metres + tolerance.share * range;
-    if (range < wide.nearest - slack || range > wide.furthest + slack) continue;
-    const Place place = place_at(inner_[i]);
+    if (range < wide.nearest - slack || range > wide.furthest + slack) return;
     for (const auto& [down, right] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
       const Place next{place.face, place.row + down, place.column + right};
       const Place beyond{place.face, place.row + kBeyond * down, place.column + kBeyond * right};
@@ -338,7 +364,7 @@ OutlineCounts RangeImage::outline(const SightSurface& surface,
       ++counts.measured;
       if (range >= there.nearest - slack && range <= there.furthest + slack) ++counts.continued;
     }
-  }
+  });
   return counts;
 }
 

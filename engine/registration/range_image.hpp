@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -89,23 +90,32 @@ class RangeImage {
     float range;  // of the nearest surface; infinite: none
     bool back;    // it is seen from behind
   };
+  // Cells of a face, the last among them; none at first.
+  struct Box {
+    int first_row = 1 << 30, last_row = -1;
+    int first_column = 1 << 30, last_column = -1;
+  };
+  // What a surface should have shown: `predicted` has one for each of `inner_`, all of which but
+  // those in the boxes are without a surface. An object fills a small part of a view.
+  struct Rendered {
+    std::vector<Predicted> predicted;
+    std::array<Box, 6> boxes;  // of each face
+  };
   // Whether anything of a block, its centre seen from the viewpoint, may lie in view.
   bool in_view(const Eigen::Vector3f& centre, float radius_m) const;
-  // One for each of `inner_`.
-  std::vector<Predicted> render(const SightSurface& surface,
-                                const Eigen::Isometry3d& T_here_surface,
-                                float patch_m) const;
+  Rendered render(const SightSurface& surface,
+                  const Eigen::Isometry3d& T_here_surface,
+                  float patch_m) const;
   // Half so many cells to each side of a place, where that is nearer than what was predicted.
-  void lay_patch(const Place& place,
-                 int half,
-                 const Predicted& patch,
-                 std::vector<Predicted>& predicted) const;
+  void lay_patch(const Place& place, int half, const Predicted& patch, Rendered& rendered) const;
   // Where most of the directions around are predicted, the surface is taken to go on between its
-  // points: as far off as the furthest of those.
-  void fill_gaps(std::vector<Predicted>& predicted) const;
+  // points: as far off as the furthest of those. Beyond a box there are three at most.
+  void fill_gaps(Rendered& rendered) const;
   template <typename Visit>
-  void visit_around(std::size_t inner, const Visit& visit) const;
-  std::size_t solid(const std::vector<signed char>& says) const;
+  void visit_inner(const std::array<Box, 6>& boxes, const Visit& visit) const;
+  template <typename Visit>
+  void visit_around(const Place& place, const Visit& visit) const;
+  std::size_t solid(const std::array<Box, 6>& boxes, const std::vector<signed char>& says) const;
   // Cells that were measured, and of them those whose neighbours were too.
   struct Completeness {
     std::size_t measured = 0, complete = 0;

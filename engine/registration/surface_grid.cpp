@@ -13,6 +13,9 @@ namespace landmarkdb {
 namespace {
 
 constexpr std::size_t kStep = 4096;  // points between two looks at the stop token
+// Points whose blocks are filled together: enough to fill each block once in most clouds, and some
+// ten megabytes while that is done.
+constexpr std::size_t kAtATime = std::size_t{1} << 18U;
 
 // Throws when a point lies more cells from zero than a key can hold.
 void check_extent(std::span<const Eigen::Vector3f> points, double cell_m) {
@@ -28,21 +31,21 @@ void check_extent(std::span<const Eigen::Vector3f> points, double cell_m) {
   throw Error(ErrorCode::kInvalidArgument, text.str(), "voxel");
 }
 
-// `blocks` were needed for `done` of the `points`.
-[[noreturn]] void refuse_blocks(std::size_t blocks,
-                                std::size_t done,
-                                std::size_t points,
-                                double cell_m) {
+}  // namespace
+
+void SurfaceGrid::check_blocks(std::size_t blocks,
+                               std::size_t done,
+                               std::size_t points,
+                               double cell_m) {
+  if (blocks <= kMostBlocks) return;
   const double share = static_cast<double>(std::max<std::size_t>(done, 1)) /
                        static_cast<double>(std::max<std::size_t>(points, 1));
   std::ostringstream text;
   text << "a voxel of " << cell_m << " m is too small for this cloud: the grid of its " << points
        << " points would take about " << static_cast<double>(blocks) / share
-       << " blocks of 2 KiB, the limit is " << SurfaceGrid::kMostBlocks;
+       << " blocks of 2 KiB, the limit is " << kMostBlocks;
   throw Error(ErrorCode::kInvalidArgument, text.str(), "voxel");
 }
-
-}  // namespace
 
 std::uint64_t GridSize::bytes() const {
   constexpr std::uint64_t kBlockBytes = 2048 + 24;  // and its place in a half-full table
@@ -70,7 +73,7 @@ GridSize SurfaceGrid::size_for(std::span<const Eigen::Vector3f> points,
         for (int x = low.x(); x <= high.x(); ++x) blocks.insert(key_of(Cell(x, y, z)));
       }
     }
-    if (blocks.size() > kMostBlocks) refuse_blocks(blocks.size(), i + 1, points.size(), cell_m);
+    check_blocks(blocks.size(), i + 1, points.size(), cell_m);
   }
   return {blocks.size(), points.size()};
 }
@@ -97,11 +100,11 @@ SurfaceGrid::SurfaceGrid(std::span<const Eigen::Vector3f> points,
   blocks_.emplace_back().fill(0);
   surfels_.reserve(points.size() + 1);
   surfels_.push_back({Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()});
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i % kStep == 0) context.check("grid");
-    if (blocks_.size() > kMostBlocks) refuse_blocks(blocks_.size(), i, points.size(), cell_m);
-    surfels_.push_back(Surfel{points[i], normals[i]});
-    insert_around(static_cast<std::uint32_t>(i + 1));
+  for (std::size_t i = 0; i < points.size(); ++i) surfels_.push_back({points[i], normals[i]});
+  std::vector<Cell> places{Cell::Zero()};
+  for (std::size_t i = 0; i < points.size(); i += kAtATime) {
+    const auto end = static_cast<std::uint32_t>(std::min(i + kAtATime, points.size()));
+    insert(static_cast<std::uint32_t>(i) + 1, end + 1, places, context);
   }
 }
 
@@ -120,23 +123,22 @@ void SurfaceGrid::make_table(const Cell& first, const Cell& last) {
   slots_.assign(kFirstSlots, 0);
 }
 
-SurfaceGrid::Block& SurfaceGrid::block_at(const Cell& block) {
+std::uint32_t SurfaceGrid::number_of(const Cell& block, std::vector<Cell>& places) {
   std::uint32_t* number = nullptr;
   if (!table_.empty()) {
     number = &table_[table_index(block - table_first_)];
-    if (*number != kNoBlock) return blocks_[*number];
+    if (*number != kNoBlock) return *number;
   } else {
     const std::uint64_t key = key_of(block);
-    if (2 * (blocks_.size() + 1) > keys_.size()) grow_table();
+    if (2 * (places.size() + 1) > keys_.size()) grow_table();
     const std::size_t slot = find_slot(key);
-    if (keys_[slot] == key) return blocks_[slots_[slot]];
+    if (keys_[slot] == key) return slots_[slot];
     keys_[slot] = key;
     number = &slots_[slot];
   }
-  *number = static_cast<std::uint32_t>(blocks_.size());
-  blocks_.emplace_back();
-  blocks_.back().fill(0);
-  return blocks_.back();
+  *number = static_cast<std::uint32_t>(places.size());
+  places.push_back(block);
+  return *number;
 }
 
 void SurfaceGrid::grow_table() {
@@ -149,27 +151,6 @@ void SurfaceGrid::grow_table() {
     const std::size_t slot = find_slot(old_keys[i]);
     keys_[slot] = old_keys[i];
     slots_[slot] = old_slots[i];
-  }
-}
-
-void SurfaceGrid::insert_around(std::uint32_t surfel) {
-  const Eigen::Vector3f& p = surfels_[surfel].point;
-  const Cell home = cell_of(p);
-  const float reach_squared =
-      reach_m() * reach_m() + 0.75F * cell_m_ * cell_m_;  // to a cell's far corner
-  for (int dz = -reach_; dz <= reach_; ++dz) {
-    for (int dy = -reach_; dy <= reach_; ++dy) {
-      for (int dx = -reach_; dx <= reach_; ++dx) {
-        const Cell cell = home + Cell(dx, dy, dz);
-        const Eigen::Vector3f centre = (cell.cast<float>().array() + 0.5F).matrix() * cell_m_;
-        const float distance = (centre - p).squaredNorm();
-        if (distance > reach_squared) continue;
-        std::uint32_t& stored = block_at(block_of(cell))[cell_in_block(cell)];
-        if (stored == 0 || (centre - surfels_[stored].point).squaredNorm() > distance) {
-          stored = surfel;
-        }
-      }
-    }
   }
 }
 

@@ -30,7 +30,8 @@ struct GridSize {
 // the surface names the surfel nearest to the cell's centre. Sparse: blocks of 8 x 8 x 8 cells,
 // found through a table of the box that holds them, or a hash table where that would be too large.
 //
-// Built once, then immutable and thread-safe. A copy of the surfels is kept.
+// Built once, on the threads of the context, then immutable and thread-safe. A copy of the surfels
+// is kept.
 class SurfaceGrid {
  public:
   // Cells from zero that a point may lie out, for the numbers in the keys.
@@ -105,6 +106,7 @@ class SurfaceGrid {
  private:
   using Block = std::array<std::uint32_t, kBlockCells>;  // index into surfels_; 0: none
   using Cell = Eigen::Vector3i;
+  static constexpr int kBlockSide = 1 << kBlockBits;
   static constexpr int kLimit = 1 << 20;  // cells a side: 21 bits and a sign in each key
   static constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
   static constexpr std::uint32_t kNoBlock = 0;  // the first block is empty
@@ -158,10 +160,26 @@ class SurfaceGrid {
     }
     return blocks_[number].data();
   }
-  Block& block_at(const Cell& block);
+  float middle(int cell) const { return (static_cast<float>(cell) + 0.5F) * cell_m_; }
+  // Throws where there are more than kMostBlocks after `done` of the `points`.
+  static void check_blocks(std::size_t blocks, std::size_t done, std::size_t points, double cell_m);
+  // The block's number, a new one where it had none; `places` has the block of each number.
+  std::uint32_t number_of(const Cell& block, std::vector<Cell>& places);
   void grow_table();
-  void insert_around(std::uint32_t surfel);
   void make_table(const Cell& first, const Cell& last);
+
+  // What names surfels in the cells near them (fill_surface_grid.cpp).
+  float most_squared() const;
+  template <typename Visit>
+  void visit_blocks(const Eigen::Vector3f& p, const Visit& visit) const;
+  void insert(std::uint32_t first,
+              std::uint32_t end,
+              std::vector<Cell>& places,
+              const RunContext& context);
+  void measure_block(const Block& block,
+                     const Cell& low,
+                     std::array<float, kBlockCells>& nearest) const;
+  void fill_block(Block& block, const Cell& place, std::span<const std::uint32_t> surfels) const;
 
   float cell_m_;
   float inverse_cell_;

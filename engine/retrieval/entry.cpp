@@ -54,7 +54,7 @@ GridSize grid_size(std::span<const Eigen::Vector3f> points,
   return SurfaceGrid::size_for(points, voxel_m, kReachCells, context);
 }
 
-SurfaceGrid make_wide_grid(const PreparedCloud& cloud) {
+SurfaceGrid make_wide_grid(const PreparedCloud& cloud, const RunContext& context) {
   const double cell_m = kWideCells * cloud.resolution_m;
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
@@ -62,7 +62,7 @@ SurfaceGrid make_wide_grid(const PreparedCloud& cloud) {
     points.push_back(cloud.points[i]);
     normals.push_back(cloud.normals[i]);
   }
-  return SurfaceGrid(points, normals, cell_m, kReachCells);
+  return SurfaceGrid(points, normals, cell_m, kReachCells, context);
 }
 
 Entry make_outline(CatalogEntry stored) {

@@ -44,7 +44,7 @@ GridSize grid_size(std::span<const Eigen::Vector3f> points,
 double plane_bin_m(double voxel_m);
 
 // The grid on which a proposal is first tested, in cells a few times as large.
-SurfaceGrid make_wide_grid(const PreparedCloud& cloud);
+SurfaceGrid make_wide_grid(const PreparedCloud& cloud, const RunContext& context = {});
 
 // Throws what make_grid does, naming the scene, and what `context.check` does.
 Entry make_entry(CatalogEntry stored, const RunContext& context = {});

@@ -35,15 +35,7 @@ struct QuerySurface {
 };
 
 QuerySurface make_surface(const PreparedCloud& cloud, const RunContext& context) {
-  std::optional<SurfaceGrid> fine;
-  std::optional<SurfaceGrid> wide;
-  parallel_chunks(2, context.threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      if (k == 0) fine.emplace(make_grid(cloud, context));
-      if (k == 1) wide.emplace(make_wide_grid(cloud));
-    }
-  });
-  return {std::move(*fine), std::move(*wide)};
+  return {make_grid(cloud, context), make_wide_grid(cloud, context)};
 }
 
 // Looks each of the object's descriptors up among the query's: the object is whole, the query is

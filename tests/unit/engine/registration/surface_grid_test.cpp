@@ -67,6 +67,35 @@ TEST(SurfaceGrid, NamesTheNearestSurfelWithinReachAndNothingBeyond) {
   }
 }
 
+// A block is filled again where later points of a large cloud come near it.
+TEST(SurfaceGrid, NamesTheNearestOfMorePointsThanAreFilledAtATime) {
+  Random random(5);
+  const float cell_m = 0.05F;
+  const Cloud cloud = random_cloud(300'000, Eigen::Vector3f::Zero(), 1.0F, random);
+  const SurfaceGrid grid(cloud.points, cloud.normals, cell_m, 2);
+  for (const Eigen::Vector3f& p : random_cloud(60, {0, 0, 0}, 0.9F, random).points) {
+    const Eigen::Vector3f centre = centre_of_cell(p, cell_m);
+    float nearest = std::numeric_limits<float>::infinity();
+    for (const Eigen::Vector3f& q : cloud.points) nearest = std::min(nearest, (q - centre).norm());
+    const Surfel* surfel = grid.near(p);
+    ASSERT_NE(surfel, nullptr);
+    EXPECT_NEAR((surfel->point - centre).norm(), nearest, 1e-6F);
+  }
+}
+
+TEST(SurfaceGrid, IsTheSameOnAnyNumberOfThreads) {
+  Random random(6);
+  const Cloud cloud = random_cloud(5000, {0.3F, 0.0F, -0.2F}, 1.0F, random);
+  RunContext three;
+  three.threads = 3;
+  const SurfaceGrid one_thread(cloud.points, cloud.normals, 0.05, 2);
+  const SurfaceGrid more(cloud.points, cloud.normals, 0.05, 2, three);
+  EXPECT_EQ(one_thread.memory_bytes(), more.memory_bytes());
+  for (const Eigen::Vector3f& p : random_cloud(5000, {0, 0, 0}, 1.5F, random).points) {
+    ASSERT_EQ(one_thread.stored_at(p), more.stored_at(p));
+  }
+}
+
 TEST(SurfaceGrid, WorksOnBothSidesOfZeroAndAcrossBlocks) {
   expect_like_brute_force({-0.4F, 0.4F, -0.8F}, 0.05F, 2);  // a block is 0.4 m
   expect_like_brute_force({-7.3F, -2.1F, -11.0F}, 0.05F, 2);
