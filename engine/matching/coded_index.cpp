@@ -257,7 +257,7 @@ class CodedIndex : public DescriptorIndex {
       if (compares_in_full_) {
         compare(block.row(i), refine(block.tail(i), shortlists[i].best(), compared), k, found);
       } else {
-        rank(block.code(i), refine(block.tail(i), shortlists[i].best(), k), k, found);
+        rank(block.code(i), refine(block.tail(i), shortlists[i].best(), k), found);
       }
     }
   }
@@ -401,19 +401,15 @@ class CodedIndex : public DescriptorIndex {
   }
 
   // The nearest by code and tail alone. A score is |a|^2 + 256 sum(a) less the squared distance.
-  static void rank(const std::int8_t* code,
-                   std::span<const Candidate> candidates,
-                   std::size_t k,
-                   DescriptorMatch* out) {
+  static void rank(const std::int8_t* code, std::span<Candidate> candidates, DescriptorMatch* out) {
     constexpr std::int32_t kOffset = 2 * 128;  // see CodeKernels
     std::int32_t at_zero = 0;
     for (std::size_t j = 0; j < kCodeLength; ++j) at_zero += code[j] * (code[j] + kOffset);
-    NearestList nearest(k);
+    std::sort(candidates.begin(), candidates.end(), std::greater<>());
     for (const Candidate candidate : candidates) {
       const std::int32_t squared = std::max(at_zero - score_of(candidate), 0);
-      nearest.offer({row_of(candidate), dissimilarity_of_codes(squared)});
+      *out++ = {row_of(candidate), dissimilarity_of_codes(squared)};
     }
-    nearest.write(out);
   }
 
   CodedSearchOptions options_;

@@ -31,7 +31,8 @@ struct CodedSearchOptions {
 
 // Ranks by l2 distance. Finds most of the true neighbours; what it returns was compared in full. In
 // an index with parts of which only the codes are at hand nothing is: there the distance is that of
-// code and tail, a little less than the true one, and no descriptors need to be kept.
+// code and tail, a little less than the true one, the order that of the codes, and no descriptors
+// need to be kept.
 // Rows count on through the parts in their order. The same bytes on every machine. Takes 136 bytes
 // a row beside the parts. Throws Error{kInvalidArgument} for codes that do not fit their values.
 std::unique_ptr<DescriptorIndex> make_coded_index(std::span<const CodedPart> parts,

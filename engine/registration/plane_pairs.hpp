@@ -77,6 +77,13 @@ struct PairKernels {
                     std::size_t points,
                     const PointMotion& motion,
                     const FitOptions& options);
+  // How well each point lies on the surface, as in mean_fit, 16 numbers a group.
+  void (*fits)(const SurfaceGrid& target,
+               const float* group,
+               std::size_t groups,
+               const PointMotion& motion,
+               float factor,
+               float* fits);
 };
 
 // The best this machine has.

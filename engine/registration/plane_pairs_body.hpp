@@ -123,6 +123,12 @@ LANDMARKDB_INLINE Met meet(const SurfaceGrid& target,
   return met;
 }
 
+LANDMARKDB_INLINE Floats fit_of(const Met& met, float factor) {
+  const Floats zero = {};
+  const Floats agreement = met.cosine > zero ? met.cosine : zero;
+  return agreement * exponential(factor * met.distance * met.distance);
+}
+
 void pair(const SurfaceGrid& target,
           const float* group,
           std::size_t groups,
@@ -155,7 +161,6 @@ float mean_fit(const SurfaceGrid& target,
                const PointMotion& motion,
                const FitOptions& options) {
   const SurfaceGrid::TableView view = target.table_view();
-  const Floats zero = {};
   Floats sums = {};
   for (std::size_t g = 0; g < groups; ++g) {
     if (g == options.first_groups) {
@@ -163,12 +168,24 @@ float mean_fit(const SurfaceGrid& target,
       if (mean < options.hopeless) return mean - 1.0F;
     }
     const Met met = meet(target, view, group + g * kLanes * PointGroups::kNumbers, motion);
-    const Floats agreement = met.cosine > zero ? met.cosine : zero;
-    sums += agreement * exponential(options.factor * met.distance * met.distance);
+    sums += fit_of(met, options.factor);
   }
   return add_up(sums) / static_cast<float>(points);
 }
 
-constexpr PairKernels kKernels{pair, mean_fit};
+void fits(const SurfaceGrid& target,
+          const float* group,
+          std::size_t groups,
+          const PointMotion& motion,
+          float factor,
+          float* fits) {
+  const SurfaceGrid::TableView view = target.table_view();
+  for (std::size_t g = 0; g < groups; ++g) {
+    const Met met = meet(target, view, group + g * kLanes * PointGroups::kNumbers, motion);
+    store(fits + g * kLanes, fit_of(met, factor));
+  }
+}
+
+constexpr PairKernels kKernels{pair, mean_fit, fits};
 
 #undef LANDMARKDB_INLINE

@@ -6,37 +6,37 @@
 #include <vector>
 
 #include "engine/base/parallel.hpp"
-#include "engine/registration/pose_score.hpp"
+#include "engine/registration/plane_pairs.hpp"
 
 namespace landmarkdb {
 
 namespace {
 
-// How well each of the view's sample points lies on the entry's surface under the pose, 0..1.
-std::vector<float> fits_of(const QueryView& view,
+// How well each of the points lies on the entry's surface under the pose, 0..1.
+std::vector<float> fits_of(const PointGroups& points,
                            const Entry& entry,
                            const Eigen::Isometry3d& T_entry_sensor,
                            double tolerance_m) {
-  const Eigen::Matrix3f R = T_entry_sensor.linear().cast<float>();
-  const Eigen::Vector3f t = T_entry_sensor.translation().cast<float>();
   const auto sigma = static_cast<float>(tolerance_m);
-  const float factor = -0.5F / (sigma * sigma);
-  std::vector<float> fits(view.sample_points.size(), 0.0F);
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    const Eigen::Vector3f p = R * view.sample_points[i] + t;
-    fits[i] = surface_fit(entry.grid, p, R * view.sample_normals[i], factor);
-  }
+  std::vector<float> fits(points.groups() * PointGroups::kLanes);
+  if (fits.empty()) return fits;
+  pair_kernels().fits(
+      entry.grid,
+      points.group(0),
+      points.groups(),
+      {T_entry_sensor.linear().cast<float>(), T_entry_sensor.translation().cast<float>()},
+      -0.5F / (sigma * sigma),
+      fits.data());
+  fits.resize(points.size());
   return fits;
 }
 
 // How closely the points of the view that proposed the pose lie on its entry's surface, 0..1.
-double closeness_of(const SearchInput& input, const SearchResult& result, const Assessed& pose) {
+double closeness_of(const SearchInput& input, const PointGroups& points, const Assessed& pose) {
   constexpr double kClose = 0.4;  // of the tolerance: a third of a voxel tells a slide of one voxel
   const Entry& entry = input.entries[pose.entry];
-  const std::vector<float> fits = fits_of(*result.matches[pose.matches].view,
-                                          entry,
-                                          pose.T_entry_sensor,
-                                          kClose * common_tolerance_m(input, entry));
+  const std::vector<float> fits =
+      fits_of(points, entry, pose.T_entry_sensor, kClose * common_tolerance_m(input, entry));
   double sum = 0.0;
   for (const float fit : fits) sum += static_cast<double>(fit);
   return fits.empty() ? 0.0 : sum / static_cast<double>(fits.size());
@@ -65,33 +65,41 @@ void contrast_poses(const SearchInput& input, SearchResult& result) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!input.entries[poses[i].entry].is_object()) places.push_back(i);
   }
-  std::map<const QueryView*, std::vector<std::vector<float>>> fits;  // by view, then as `places`
-  for (const std::size_t i : places) fits[result.matches[poses[i].matches].view];
-  for (auto& [view, of_poses] : fits) {
-    of_poses.resize(places.size());
+  struct OfView {
+    PointGroups points;
+    std::vector<std::vector<float>> fits;  // as `places`
+  };
+  std::map<const QueryView*, OfView> views;
+  for (const std::size_t i : places) {
+    const QueryView& view = *result.matches[poses[i].matches].view;
+    OfView& of_view = views[&view];
+    if (!of_view.fits.empty()) continue;
+    of_view.points = PointGroups(view.sample_points, view.sample_normals);
+    of_view.fits.resize(places.size());
+  }
+  for (auto& [view, of_view] : views) {
     parallel_chunks(places.size(), input.context.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         input.context.check("verify");
         const Assessed& pose = poses[places[k]];
         const Entry& entry = input.entries[pose.entry];
-        of_poses[k] = fits_of(*view, entry, pose.T_entry_sensor, common_tolerance_m(input, entry));
+        of_view.fits[k] =
+            fits_of(of_view.points, entry, pose.T_entry_sensor, common_tolerance_m(input, entry));
       }
     });
   }
   parallel_chunks(places.size(), input.context.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       input.context.check("verify");
-      poses[places[k]].closeness = closeness_of(input, result, poses[places[k]]);
+      Assessed& pose = poses[places[k]];
+      const OfView& of_view = views.at(result.matches[pose.matches].view);
+      pose.closeness = closeness_of(input, of_view.points, pose);
+      pose.contrast.assign(poses.size(), 0.0F);
+      for (std::size_t b = 0; b < places.size(); ++b) {
+        pose.contrast[places[b]] = contrast_of(of_view.fits[k], of_view.fits[b]);
+      }
     }
   });
-  for (std::size_t a = 0; a < places.size(); ++a) {
-    Assessed& pose = poses[places[a]];
-    const auto& of_poses = fits.at(result.matches[pose.matches].view);
-    pose.contrast.assign(poses.size(), 0.0F);
-    for (std::size_t b = 0; b < places.size(); ++b) {
-      pose.contrast[places[b]] = contrast_of(of_poses[a], of_poses[b]);
-    }
-  }
 }
 
 }  // namespace landmarkdb

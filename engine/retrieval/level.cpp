@@ -81,7 +81,7 @@ std::vector<DescriptorCodes> all_codes(const Entries& entries,
 // Many neighbours are asked for, and what proposes a pose need not be the very nearest: with 8
 // tails read a neighbour, and 256 more, nothing else was found at twice the time.
 CodedSearchOptions scan_options() {
-  return {.list_share = 1.0, .refined = 64, .refined_a_neighbour = 4.0};
+  return {.list_share = 1.0, .refined = 32, .refined_a_neighbour = 2.0};
 }
 
 }  // namespace

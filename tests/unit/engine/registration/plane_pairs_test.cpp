@@ -56,6 +56,15 @@ std::vector<float> paired(const PairKernels& kernels,
   return values;
 }
 
+std::vector<float> fits_of(const PairKernels& kernels,
+                           const SurfaceGrid& grid,
+                           const PointGroups& groups,
+                           const PointMotion& motion) {
+  std::vector<float> fits(groups.groups() * kLanes);
+  kernels.fits(grid, groups.group(0), groups.groups(), motion, -30.0F, fits.data());
+  return fits;
+}
+
 TEST(PointGroups, HoldsEachPointOnceAndEndsInPointsWithoutNormal) {
   const Scene scene(50);
   const PointGroups groups(scene.points, scene.normals, 3);
@@ -140,6 +149,25 @@ TEST(PairKernels, MeanFitIsTheMeanOverThePointsOrGivesUp) {
   EXPECT_GT(given_up, -1.0F);
 }
 
+TEST(PairKernels, FitsAreOfEachPointWhatTheirMeanIsOfAll) {
+  const Scene scene(70);
+  const SurfaceGrid grid = scene.grid();
+  const PointGroups groups(scene.points, scene.normals);
+  const std::vector<float> fits = fits_of(pair_kernels(), grid, groups, scene.motion);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    sum += fits[i];
+    const Eigen::Vector3f p =
+        i < scene.points.size()
+            ? scene.motion.R_target_source * scene.points[i] + scene.motion.t_target_source
+            : Eigen::Vector3f::Zero();
+    EXPECT_EQ(fits[i] > 0.0F, i < scene.points.size() && grid.near(p) != nullptr) << i;
+  }
+  const float mean = pair_kernels().mean_fit(
+      grid, groups.group(0), groups.groups(), groups.size(), scene.motion, {.factor = -30.0F});
+  EXPECT_NEAR(sum / static_cast<double>(groups.size()), mean, 1e-5);
+}
+
 TEST(PairKernels, GiveTheSameBytesOnEveryInstructionSet) {
   const PairKernels* baseline = pair_kernels("sse2");
   ASSERT_NE(baseline, nullptr);
@@ -162,6 +190,9 @@ TEST(PairKernels, GiveTheSameBytesOnEveryInstructionSet) {
                            {.factor = -30.0F});
       };
       EXPECT_EQ(fit(*kernels), fit(*baseline)) << name;
+      EXPECT_EQ(fits_of(*kernels, grid, groups, scene.motion),
+                fits_of(*baseline, grid, groups, scene.motion))
+          << name;
     }
   }
   EXPECT_EQ(pair_kernels("none such"), nullptr);
