@@ -57,10 +57,9 @@ void distances_around(const std::vector<Eigen::Vector3f>& points,
   squared.clear();
   for (std::int64_t dz = -1; dz <= 1; ++dz) {
     for (std::int64_t dy = -1; dy <= 1; ++dy) {
-      for (std::int64_t dx = -1; dx <= 1; ++dx) {
-        const VoxelCell* near = find_cell(grid, cell.x + dx, cell.y + dy, cell.z + dz);
-        if (near == nullptr) continue;
-        for (std::uint32_t k = near->begin; k < near->end; ++k) {
+      for (const VoxelCell& near :
+           find_row(grid, cell.x - 1, cell.x + 1, cell.y + dy, cell.z + dz)) {
+        for (std::uint32_t k = near.begin; k < near.end; ++k) {
           if (grid.order[k] != i) {
             squared.push_back((points[grid.order[k]] - points[i]).squaredNorm());
           }

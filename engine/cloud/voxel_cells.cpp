@@ -141,16 +141,20 @@ VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
   return result;
 }
 
-const VoxelCell* find_cell(const VoxelCells& cells,
-                           std::int64_t x,
-                           std::int64_t y,
-                           std::int64_t z) {
-  const VoxelCell wanted{x, y, z, 0, 0};
-  const auto place = std::lower_bound(
-      cells.cells.begin(), cells.cells.end(), wanted, [](const VoxelCell& a, const VoxelCell& b) {
+std::span<const VoxelCell> find_row(const VoxelCells& cells,
+                                    std::int64_t x_first,
+                                    std::int64_t x_last,
+                                    std::int64_t y,
+                                    std::int64_t z) {
+  const VoxelCell first{x_first, y, z, 0, 0};
+  const auto begin = std::lower_bound(
+      cells.cells.begin(), cells.cells.end(), first, [](const VoxelCell& a, const VoxelCell& b) {
         return rank(a) < rank(b);
       });
-  return place != cells.cells.end() && rank(*place) == rank(wanted) ? &*place : nullptr;
+  const VoxelCell last{x_last, y, z, 0, 0};
+  auto end = begin;
+  while (end != cells.cells.end() && rank(*end) <= rank(last)) ++end;
+  return {begin, end};
 }
 
 }  // namespace landmarkdb

@@ -30,7 +30,11 @@ VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
                           double edge_m,
                           const RunContext& context = {});
 
-// The cell's place in `cells`, or nullptr where it is empty.
-const VoxelCell* find_cell(const VoxelCells& cells, std::int64_t x, std::int64_t y, std::int64_t z);
+// The cells that are not empty of x_first .. x_last in the row of this y and z.
+std::span<const VoxelCell> find_row(const VoxelCells& cells,
+                                    std::int64_t x_first,
+                                    std::int64_t x_last,
+                                    std::int64_t y,
+                                    std::int64_t z);
 
 }  // namespace landmarkdb

@@ -11,6 +11,8 @@ namespace landmarkdb {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// What a direction says of a pose; below zero it contradicts.
+constexpr signed char kAgrees = 1, kCrossed = -1, kHidden = -2;
 constexpr int kWidestPatch = 6;  // cells to each side: what stands at the lens fills no more
 
 }  // namespace
@@ -170,6 +172,7 @@ SightCounts& SightCounts::operator+=(const SightCounts& other) {
   crossed += other.crossed;
   hidden += other.hidden;
   solid += other.solid;
+  solid_crossed += other.solid_crossed;
   return *this;
 }
 
@@ -285,16 +288,16 @@ void RangeImage::fill_gaps(Rendered& rendered) const {
   for (const auto& [i, patch] : filled) predicted[i] = patch;
 }
 
-std::size_t RangeImage::solid(const std::array<Box, 6>& boxes,
-                              const std::vector<signed char>& says) const {
-  std::size_t count = 0;
+void RangeImage::count_solid(const std::array<Box, 6>& boxes,
+                             const std::vector<signed char>& says,
+                             SightCounts& counts) const {
   visit_inner(boxes, [&](std::uint32_t i, const Place& place) {
     if (says[i] >= 0) return;
     bool alone = true;
     visit_around(place, [&](std::uint32_t beside) { alone = alone && says[beside] <= 0; });
-    count += alone ? 1U : 0U;
+    counts.solid += alone ? 1U : 0U;
+    counts.solid_crossed += alone && says[i] == kCrossed ? 1U : 0U;
   });
-  return count;
 }
 
 bool RangeImage::hides(const Eigen::Vector3f& p, float slack_m) const {
@@ -314,7 +317,7 @@ SightCounts RangeImage::compare(const SightSurface& surface,
   const std::vector<Predicted>& predicted = rendered.predicted;
   SightCounts counts;
   counts.measured = inner_.size();
-  std::vector<signed char> says(inner_.size(), 0);  // 1: agrees, -1: contradicts, 0: nothing
+  std::vector<signed char> says(inner_.size(), 0);  // kAgrees, kCrossed, kHidden; 0: nothing
   visit_inner(rendered.boxes, [&](std::uint32_t i, const Place&) {
     if (predicted[i].range == kInfinity) return;
     const Cell& wide = widened_[inner_[i]];
@@ -322,16 +325,16 @@ SightCounts RangeImage::compare(const SightSurface& surface,
     const float slack = tolerance.metres + tolerance.share * wide.furthest;
     if (predicted[i].range < wide.nearest - slack) {
       ++counts.crossed;
-      says[i] = -1;
+      says[i] = kCrossed;
     } else if (front && predicted[i].range <= wide.furthest + slack) {
       ++counts.agree;
-      says[i] = 1;
+      says[i] = kAgrees;
     } else if (front) {
       ++counts.hidden;
-      says[i] = -1;
+      says[i] = kHidden;
     }
   });
-  counts.solid = solid(rendered.boxes, says);
+  count_solid(rendered.boxes, says, counts);
   return counts;
 }
 

@@ -26,6 +26,7 @@ struct SightCounts {
   // Of those crossed or hidden: the eight directions around are none that agree. A silhouette half
   // a cell off leaves a line of contradictions; something that is not there leaves an area.
   std::size_t solid = 0;
+  std::size_t solid_crossed = 0;  // of these, those crossed
 
   SightCounts& operator+=(const SightCounts& other);
 };
@@ -115,7 +116,9 @@ class RangeImage {
   void visit_inner(const std::array<Box, 6>& boxes, const Visit& visit) const;
   template <typename Visit>
   void visit_around(const Place& place, const Visit& visit) const;
-  std::size_t solid(const std::array<Box, 6>& boxes, const std::vector<signed char>& says) const;
+  void count_solid(const std::array<Box, 6>& boxes,
+                   const std::vector<signed char>& says,
+                   SightCounts& counts) const;
   // Cells that were measured, and of them those whose neighbours were too.
   struct Completeness {
     std::size_t measured = 0, complete = 0;

@@ -97,7 +97,9 @@ void measure_sight(std::span<const RangeImage> ranges,
       share(2 * counts.agree + kPriorDirections, 2 * (counts.predicted() + kPriorDirections));
   evidence.crossed = share(counts.crossed, counts.predicted());
   evidence.coverage = share(counts.predicted(), counts.measured);
-  evidence.contradicted = share(counts.solid, counts.predicted());
+  evidence.contradicted = options.hidden_contradicts
+                              ? share(counts.solid, counts.predicted())
+                              : share(counts.solid_crossed, counts.agree + counts.crossed);
 }
 
 double observability(const IcpResult& icp, double source_extent_m, std::size_t source_points) {

@@ -14,13 +14,15 @@ namespace landmarkdb {
 
 // What a pose explains, and what speaks against it. Shares are 0..1.
 struct Evidence {
-  double overlap = 0.0;       // of the source points: on the target's surface, normals agreeing
-  double balanced = 0.0;      // the same, each surface direction weighted alike
-  double rmse_m = 0.0;        // of those points, to the surface
-  double explained = 0.0;     // of the directions where the entry predicts a range: it agrees
-  double crossed = 0.0;       // of the same: the sensor looked through the entry's surface
-  double coverage = 0.0;      // of the directions measured: the entry predicts a range
-  double contradicted = 0.0;  // of the directions predicted: in an area of them all is contradicted
+  double overlap = 0.0;    // of the source points: on the target's surface, normals agreeing
+  double balanced = 0.0;   // the same, each surface direction weighted alike
+  double rmse_m = 0.0;     // of those points, to the surface
+  double explained = 0.0;  // of the directions where the entry predicts a range: it agrees
+  double crossed = 0.0;    // of the same: the sensor looked through the entry's surface
+  double coverage = 0.0;   // of the directions measured: the entry predicts a range
+  // Of the directions predicted, of an object those of them that nothing hides: in an area of them
+  // all is contradicted.
+  double contradicted = 0.0;
   double observability =
       0.0;  // weakest freedom: 0 none (a plane), 1 as strong as it gets (a ball of normals)
   double agreeing = 0.0;  // the query's keypoints of which a descriptor pair agrees
@@ -48,6 +50,9 @@ struct VerifyOptions {
   double sight_tolerance_cells = 2.0;  // for free space, plus the next
   double sight_tolerance_range =
       0.02;  // share of the range: a depth camera's noise, and the angle of a cell
+  // Whether a surface before which something was measured is contradicted: not where clutter may
+  // stand before it.
+  bool hidden_contradicts = true;
 };
 
 // Measures how many of the source's points lie on the target's surface under the pose.

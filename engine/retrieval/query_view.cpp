@@ -114,10 +114,10 @@ CleanQuery dense_part(const CleanQuery& query, double spacing_m, const RunContex
   };
   for (const VoxelCell& cell : cells.cells) {
     if (cell.end - cell.begin < kFewest) continue;
-    for (int k = 0; k < 27; ++k) {
-      const VoxelCell* beside =
-          find_cell(cells, cell.x + k % 3 - 1, cell.y + k / 3 % 3 - 1, cell.z + k / 9 - 1);
-      if (beside != nullptr) mark(*beside);
+    for (int k = 0; k < 9; ++k) {
+      const std::int64_t y = cell.y + k % 3 - 1;
+      const std::int64_t z = cell.z + k / 3 - 1;
+      for (const VoxelCell& beside : find_row(cells, cell.x - 1, cell.x + 1, y, z)) mark(beside);
     }
   }
   CleanQuery dense;

@@ -28,26 +28,38 @@ constexpr std::size_t kSettled = 800;
 // degree, three pixels of a depth camera, 5 mm at a metre.
 constexpr double kSightStepRad = 0.3 * std::numbers::pi / 180.0;
 
-// The query's surface at one resolution.
+// What objects of one resolution are held against.
 struct QuerySurface {
   SurfaceGrid fine;
   SurfaceGrid wide;
+  std::unique_ptr<const DescriptorIndex> descriptors;
 };
 
-QuerySurface make_surface(const PreparedCloud& cloud, const RunContext& context) {
-  return {make_grid(cloud, context), make_wide_grid(cloud, context)};
+std::unique_ptr<QuerySurface> make_surface(const SearchInput& input, const QueryView& view) {
+  const auto grids = [&] {
+    const StageTimer timer(input.timings.preprocess);
+    return std::pair{make_grid(view.prepared, input.context),
+                     make_wide_grid(view.prepared, input.context)};
+  };
+  auto [fine, wide] = grids();
+  const StageTimer timer(input.timings.match);
+  auto descriptors = make_exact_index(view.descriptors.values, Measure::kL2);
+  return std::make_unique<QuerySurface>(
+      QuerySurface{std::move(fine), std::move(wide), std::move(descriptors)});
 }
 
 // Looks each of the object's descriptors up among the query's: the object is whole, the query is
 // clutter.
-EntryMatches match_object(const SearchInput& input, std::size_t e, const QueryView& view) {
+EntryMatches match_object(const SearchInput& input,
+                          std::size_t e,
+                          const QueryView& view,
+                          const DescriptorIndex& index) {
   const StageTimer timer(input.timings.match);
   EntryMatches matches;
   matches.entry = e;
   matches.view = &view;
-  const auto index = make_exact_index(view.descriptors.values, Measure::kL2);
   std::vector<DescriptorMatch> found;
-  index->search(input.entries[e].record().descriptors.values, kNeighbours, found, input.context);
+  index.search(input.entries[e].record().descriptors.values, kNeighbours, found, input.context);
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].index == DescriptorMatch::kNone) continue;
     matches.putative.push_back(
@@ -109,11 +121,8 @@ void search_objects(const SearchInput& input, SearchResult& result) {
     }
     if (view.descriptors.size() == 0) continue;
     auto& surface = surfaces[&view];
-    if (!surface) {
-      const StageTimer timer(input.timings.preprocess);
-      surface = std::make_unique<QuerySurface>(make_surface(view.prepared, input.context));
-    }
-    result.matches.push_back(match_object(input, e, view));
+    if (!surface) surface = make_surface(input, view);
+    result.matches.push_back(match_object(input, e, view, *surface->descriptors));
     const StageTimer timer(input.timings.pose);
     const Eigen::Vector3d centre = centre_of(entry.record().prepared);
     const std::vector<Proposal> proposals = propose_object(result.matches.back(), entry);

@@ -76,11 +76,13 @@ struct Fit {
   double free_space_violation = 0.0;
   double explained = 0.0;
   double coverage = 0.0;
-  double quality = 0.0;       // 0..1: overlap and agreement as one figure; what poses are ranked by
-  double margin = 0.0;        // 0..1: how far ahead of the best different pose
-  double agreeing = 0.0;      // keypoints of which a descriptor pair agrees with the pose
-  double contrast = 0.0;      // -1..1: of the points that fit the pose and its nearest rival unlike
-  double contradicted = 0.0;  // of the directions predicted: amid others that are contradicted too
+  double quality = 0.0;   // 0..1: overlap and agreement as one figure; what poses are ranked by
+  double margin = 0.0;    // 0..1: how far ahead of the best different pose
+  double agreeing = 0.0;  // keypoints of which a descriptor pair agrees with the pose
+  double contrast = 0.0;  // -1..1: of the points that fit the pose and its nearest rival unlike
+  // Of the directions predicted, of an object those that nothing hides: amid others that are
+  // contradicted too.
+  double contradicted = 0.0;
   double observability = 0.0;  // 0..1: weakest of the six freedoms against the strongest
   double outgrown = 0.0;       // of an object's outline: the surface seen goes on flush beyond it
   // Of an object's surface that must be seen: how many points, how closely it lies on the surface

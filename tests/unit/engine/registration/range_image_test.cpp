@@ -312,12 +312,42 @@ TEST(RangeImage, TellsAThingThatIsNotThereFromASilhouette) {
   EXPECT_GT(area.crossed, 200U);            // 23 by 23 deg
   EXPECT_GT(2 * area.solid, area.crossed);  // but its rim
   EXPECT_LT(area.solid, area.crossed);
+  EXPECT_EQ(area.solid_crossed, area.solid);
   Points rod = patch({-1, -1}, {1, 1}, 2.0F);
   for (float y = -0.5F; y <= 0.5F; y += 0.01F) rod.emplace_back(0.0F, y, 1.8F);
   constexpr float kThin_m = 0.02F;  // less than a cell at that range
   const SightCounts line = image.compare({rod}, Eigen::Isometry3d::Identity(), kThin_m, kTolerance);
   EXPECT_GT(line.crossed, 20U);
   EXPECT_EQ(line.solid, 0U);
+}
+
+// A wall before half of what should be seen at 3 m: none of that was seen through.
+TEST(RangeImage, TellsWhatIsHiddenFromWhatIsCrossed) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  const SightCounts counts = compare(image, patch({-0.5F, -0.5F}, {0.5F, 0.5F}, 3.0F));
+  EXPECT_GT(counts.hidden, 200U);
+  EXPECT_EQ(counts.crossed, 0U);
+  EXPECT_EQ(counts.solid, counts.hidden);
+  EXPECT_EQ(counts.solid_crossed, 0U);
+}
+
+// Two things in two corners of the view, on different faces of the cube: each is compared.
+TEST(RangeImage, ComparesAllThatStandsApart) {
+  Points around = patch({-4, -4}, {4, 4}, 2.0F);
+  for (const Eigen::Vector3f& p : patch({-4, -4}, {4, 4}, 2.0F)) {
+    around.emplace_back(p.z(), p.x(), p.y());
+  }
+  const RangeImage image(around, Eigen::Vector3f::Zero(), kStep);
+  const Points ahead = patch({0.5F, 0.3F}, {0.9F, 0.8F}, 2.0F);
+  Points aside;
+  for (const Eigen::Vector3f& p : ahead) aside.emplace_back(p.z(), p.x(), p.y());
+  Points both = ahead;
+  both.insert(both.end(), aside.begin(), aside.end());
+  const SightCounts first = compare(image, ahead);
+  const SightCounts second = compare(image, aside);
+  EXPECT_GT(first.agree, 50U);
+  EXPECT_GT(second.agree, 50U);
+  EXPECT_EQ(compare(image, both).agree, first.agree + second.agree);
 }
 
 TEST(RangeImage, SaysNothingOfTheBackOfASurface) {

@@ -129,6 +129,24 @@ TEST(Observability, IsNothingWithoutPoints) {
   EXPECT_EQ(observability(IcpResult{}, 1.0, 10), 0.0);
 }
 
+TEST(MeasureSight, LetsClutterStandBeforeAnObject) {
+  std::vector<Eigen::Vector3f> seen, behind;
+  for (int i = -100; i <= 100; ++i) {
+    for (int j = -100; j <= 100; ++j) {
+      seen.emplace_back(0.01F * static_cast<float>(i), 0.01F * static_cast<float>(j), 2.0F);
+      behind.emplace_back(1.5F * seen.back());
+    }
+  }
+  const std::vector<RangeImage> ranges{RangeImage(seen, Eigen::Vector3f::Zero(), 0.0175)};
+  Evidence evidence;
+  VerifyOptions options;
+  measure_sight(ranges, {behind}, Eigen::Isometry3d::Identity(), kCell_m, options, evidence);
+  EXPECT_GT(evidence.contradicted, 0.95);
+  options.hidden_contradicts = false;
+  measure_sight(ranges, {behind}, Eigen::Isometry3d::Identity(), kCell_m, options, evidence);
+  EXPECT_EQ(evidence.contradicted, 0.0);
+}
+
 TEST(MeasureSight, TurnsCountsIntoShares) {
   // A wall at 2 m; the entry has its left half right, and a screen before the right half's middle.
   std::vector<Eigen::Vector3f> seen, entry;
