@@ -5,52 +5,15 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <utility>
 
 #include <Eigen/Cholesky>
+
+#include "engine/mono/split_chain.hpp"
 
 namespace landmarkdb {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-
-// The point of (first, last) that is farthest from the straight line between the two.
-std::pair<std::size_t, double> farthest(std::span<const EdgePoint> points,
-                                        std::size_t first,
-                                        std::size_t last) {
-  const Eigen::Vector2f from = points[first].uv;
-  const Eigen::Vector2f along = points[last].uv - from;
-  const float length = along.norm();
-  std::size_t worst = first;
-  float most = 0.0F;
-  for (std::size_t i = first + 1; i < last; ++i) {
-    const Eigen::Vector2f w = points[i].uv - from;
-    const float away =
-        length > 1e-3F ? std::abs(along.x() * w.y() - along.y() * w.x()) / length : w.norm();
-    if (away > most) {
-      most = away;
-      worst = i;
-    }
-  }
-  return {worst, most};
-}
-
-// Ramer (1972), Douglas and Peucker (1973): the indices where a chain is split, both ends among
-// them.
-std::vector<std::size_t> split_points(std::span<const EdgePoint> points, double tolerance_px) {
-  std::vector<std::size_t> splits{0};
-  std::vector<std::size_t> open{points.size() - 1};  // right ends still to be reached
-  while (!open.empty()) {
-    const auto [worst, away] = farthest(points, splits.back(), open.back());
-    if (away > tolerance_px) {
-      open.push_back(worst);
-    } else {
-      splits.push_back(open.back());
-      open.pop_back();
-    }
-  }
-  return splits;
-}
 
 struct Piece {
   std::size_t begin = 0, end = 0;  // points [begin, end)
@@ -90,7 +53,7 @@ std::span<const EdgePoint> points_of(std::span<const EdgePoint> points,
 }
 
 std::vector<Piece> cut_into_pieces(std::span<const EdgePoint> points, double tolerance_px) {
-  const std::vector<std::size_t> splits = split_points(points, tolerance_px);
+  const std::vector<std::size_t> splits = split_chain(points, tolerance_px);
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i + 1 < splits.size(); ++i) {
     const std::size_t end = i + 2 == splits.size() ? points.size() : splits[i + 1];
