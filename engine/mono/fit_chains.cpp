@@ -101,7 +101,7 @@ std::vector<EdgePoint> some_of(std::span<const EdgePoint> points) {
 
 std::optional<EllipseFit> try_ellipse(std::span<const EdgePoint> points,
                                       double cost_so_far,
-                                      const FitOptions& options) {
+                                      const ChainFitOptions& options) {
   constexpr double kLeastRatio = 0.1, kLargestRms_px = 1.0, kLeastArc = 60.0 * kDegree;
   constexpr double kParameters = 7.0;  // its five, and where it ends
   constexpr double kSmallest_px = 2.0;
@@ -181,7 +181,7 @@ std::vector<EdgePoint> started_at_corner(std::span<const EdgePoint> points) {
 
 class ChainFitter {
  public:
-  ChainFitter(const FitOptions& options, ChainFits& fits) : options_(options), fits_(fits) {}
+  ChainFitter(const ChainFitOptions& options, ChainFits& fits) : options_(options), fits_(fits) {}
 
   void fit(std::span<const EdgePoint> chain, bool closed) {
     std::vector<EdgePoint> rotated;
@@ -262,7 +262,7 @@ class ChainFitter {
                      const Run& before,
                      const Run& after);
 
-  const FitOptions& options_;
+  const ChainFitOptions& options_;
   ChainFits& fits_;
 };
 
@@ -306,7 +306,7 @@ void ChainFitter::add_inflexion(std::span<const EdgePoint> chain,
 
 ChainFits fit_chains(std::span<const EdgePoint> points,
                      std::span<const EdgeChain> chains,
-                     const FitOptions& options,
+                     const ChainFitOptions& options,
                      const RunContext& run) {
   ChainFits fits;
   ChainFitter fitter(options, fits);
