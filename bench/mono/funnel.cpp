@@ -84,6 +84,7 @@ Truth test_truth(const Bench& bench, const Picture& picture, const ImageFeatures
                               .edge_share = candidate->edge_share,
                               .edges = candidate->edges,
                               .shape_odds = candidate->shape_odds,
+                              .face_odds = candidate->face_odds,
                               .margin = kNoRival});
   truth.candidate = std::move(*candidate);
   truth.stage = truth.confidence < 0.5 ? kWeak : kSearch;

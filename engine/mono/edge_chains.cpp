@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/mono/faint_chains.hpp"
+
 namespace landmarkdb {
 namespace {
 
@@ -127,12 +129,13 @@ EdgeChains link_edges(const EdgeMap& map, std::size_t min_points, const RunConte
       result.points.push_back(map.points[at]);
     }
     chain.end = static_cast<std::uint32_t>(result.points.size());
-    if (chain.end - chain.begin < min_points || strongest < map.high_contrast) {
+    if (chain.end - chain.begin < min_points) {
       result.points.resize(chain.begin);
       return;
     }
     chain.closed = at == start || ends_meet(result.points.back(), result.points[chain.begin]);
     result.chains.push_back(chain);
+    if (strongest < map.high_contrast) keep_straight_runs(result);
   };
   for (std::uint32_t i = 0; i < map.points.size(); ++i) {
     if (links.previous[i] == kNone) follow(i);

@@ -95,11 +95,12 @@ constexpr double kNoiseSmoothed = 1.088 / 2.5;
 constexpr double kNoiseUnsmoothed = 3.464 / 4.0;
 
 void choose_thresholds(EdgeMap& map, const GreyImage& image, const EdgeOptions& options) {
-  // 4.5 sigma: one false maximum in 25,000 pixels of pure noise (Rayleigh). 3 levels: the blocks
-  // of a JPEG and the steps of rounding stay below.
-  constexpr double kSigmas = 4.5;
+  // 3.5 sigma: one false maximum in 450 pixels of pure noise (Rayleigh), where a chain takes
+  // twelve. 3 levels: the blocks of a JPEG and the steps of rounding stay below.
+  constexpr double kSigmas = 3.5;
   constexpr double kLeast = 3.0;
-  constexpr double kHighOverLow = 2.5;  // 0.4 the other way round
+  // Uneven light makes edges of some low contrasts; what is fainter than this has to be straight.
+  constexpr double kHighOverLow = 4.0;
   const double noise = options.smooth ? kNoiseSmoothed : kNoiseUnsmoothed;
   map.low_contrast = options.low_contrast > 0.0
                          ? options.low_contrast

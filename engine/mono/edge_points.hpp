@@ -12,9 +12,9 @@ namespace landmarkdb {
 
 // Contrast is in grey levels: of a sharp step that would have the same gradient.
 struct EdgeOptions {
-  bool smooth = true;                  // by a binomial of sigma 1 px
-  double low_contrast = 0.0;           // points below are none; 0: from the image's noise
-  double high_contrast = 0.0;          // a chain needs a point of it; 0: 2.5 times the low one
+  bool smooth = true;          // by a binomial of sigma 1 px
+  double low_contrast = 0.0;   // points below are none; 0: from the image's noise
+  double high_contrast = 0.0;  // a chain without it has to be straight; 0: 4 times the low one
   std::size_t max_points = 2'000'000;  // the weakest are left out beyond
 };
 

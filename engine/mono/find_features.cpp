@@ -203,7 +203,7 @@ ImageFeatures find_image_features(const GreyImage& image,
   const StraightLens lens(options.camera, image.width, image.height);
   const EdgeChains straight = lens.active() ? straightened(chains, lens) : EdgeChains{};
   const EdgeChains& used = lens.active() ? straight : chains;
-  FitOptions fitting;
+  ChainFitOptions fitting;
   fitting.split_px = options.split_px;
   fitting.min_length_px = options.min_segment_px;
   fitting.largest_axis_px = 2.0 * std::hypot(image.width, image.height);

@@ -13,7 +13,7 @@ namespace landmarkdb {
 struct FeatureSearchOptions {
   bool smooth = true;          // by a Gaussian of sigma 1 px
   double low_contrast = 0.0;   // grey levels; 0: from the image's noise
-  double high_contrast = 0.0;  // 0: 2.5 times the low one
+  double high_contrast = 0.0;  // 0: 4 times the low one
   std::size_t min_chain_points = 12;
   double split_px = 1.5;  // chains are split where they bend by more
   double min_segment_px = 8.0;

@@ -5,52 +5,15 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <utility>
 
 #include <Eigen/Cholesky>
+
+#include "engine/mono/split_chain.hpp"
 
 namespace landmarkdb {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-
-// The point of (first, last) that is farthest from the straight line between the two.
-std::pair<std::size_t, double> farthest(std::span<const EdgePoint> points,
-                                        std::size_t first,
-                                        std::size_t last) {
-  const Eigen::Vector2f from = points[first].uv;
-  const Eigen::Vector2f along = points[last].uv - from;
-  const float length = along.norm();
-  std::size_t worst = first;
-  float most = 0.0F;
-  for (std::size_t i = first + 1; i < last; ++i) {
-    const Eigen::Vector2f w = points[i].uv - from;
-    const float away =
-        length > 1e-3F ? std::abs(along.x() * w.y() - along.y() * w.x()) / length : w.norm();
-    if (away > most) {
-      most = away;
-      worst = i;
-    }
-  }
-  return {worst, most};
-}
-
-// Ramer (1972), Douglas and Peucker (1973): the indices where a chain is split, both ends among
-// them.
-std::vector<std::size_t> split_points(std::span<const EdgePoint> points, double tolerance_px) {
-  std::vector<std::size_t> splits{0};
-  std::vector<std::size_t> open{points.size() - 1};  // right ends still to be reached
-  while (!open.empty()) {
-    const auto [worst, away] = farthest(points, splits.back(), open.back());
-    if (away > tolerance_px) {
-      open.push_back(worst);
-    } else {
-      splits.push_back(open.back());
-      open.pop_back();
-    }
-  }
-  return splits;
-}
 
 struct Piece {
   std::size_t begin = 0, end = 0;  // points [begin, end)
@@ -90,7 +53,7 @@ std::span<const EdgePoint> points_of(std::span<const EdgePoint> points,
 }
 
 std::vector<Piece> cut_into_pieces(std::span<const EdgePoint> points, double tolerance_px) {
-  const std::vector<std::size_t> splits = split_points(points, tolerance_px);
+  const std::vector<std::size_t> splits = split_chain(points, tolerance_px);
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i + 1 < splits.size(); ++i) {
     const std::size_t end = i + 2 == splits.size() ? points.size() : splits[i + 1];
@@ -138,7 +101,7 @@ std::vector<EdgePoint> some_of(std::span<const EdgePoint> points) {
 
 std::optional<EllipseFit> try_ellipse(std::span<const EdgePoint> points,
                                       double cost_so_far,
-                                      const FitOptions& options) {
+                                      const ChainFitOptions& options) {
   constexpr double kLeastRatio = 0.1, kLargestRms_px = 1.0, kLeastArc = 60.0 * kDegree;
   constexpr double kParameters = 7.0;  // its five, and where it ends
   constexpr double kSmallest_px = 2.0;
@@ -218,7 +181,7 @@ std::vector<EdgePoint> started_at_corner(std::span<const EdgePoint> points) {
 
 class ChainFitter {
  public:
-  ChainFitter(const FitOptions& options, ChainFits& fits) : options_(options), fits_(fits) {}
+  ChainFitter(const ChainFitOptions& options, ChainFits& fits) : options_(options), fits_(fits) {}
 
   void fit(std::span<const EdgePoint> chain, bool closed) {
     std::vector<EdgePoint> rotated;
@@ -299,7 +262,7 @@ class ChainFitter {
                      const Run& before,
                      const Run& after);
 
-  const FitOptions& options_;
+  const ChainFitOptions& options_;
   ChainFits& fits_;
 };
 
@@ -343,7 +306,7 @@ void ChainFitter::add_inflexion(std::span<const EdgePoint> chain,
 
 ChainFits fit_chains(std::span<const EdgePoint> points,
                      std::span<const EdgeChain> chains,
-                     const FitOptions& options,
+                     const ChainFitOptions& options,
                      const RunContext& run) {
   ChainFits fits;
   ChainFitter fitter(options, fits);

@@ -53,7 +53,7 @@ struct ChainFits {
   std::vector<Inflexion> inflexions{};
 };
 
-struct FitOptions {
+struct ChainFitOptions {
   EdgeNoise noise{};
   double split_px = 1.5;         // Ramer-Douglas-Peucker
   double min_length_px = 8.0;    // of a line
@@ -65,7 +65,7 @@ struct FitOptions {
 // `points` are those of the chains, moved where the lens is straight.
 ChainFits fit_chains(std::span<const EdgePoint> points,
                      std::span<const EdgeChain> chains,
-                     const FitOptions& options,
+                     const ChainFitOptions& options,
                      const RunContext& run);
 
 // Total least squares; points whose gradient is over 15 degrees from the normal, and then those

@@ -1,7 +1,6 @@
 #include "engine/mono/fit_ellipse.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -95,27 +94,49 @@ std::optional<ImageEllipse> ellipse_of(const Vector6d& th, const Frame& frame) {
   return ellipse;
 }
 
-// Distance to first order, f / |grad f| with f = (p/a)^2 + (q/b)^2 - 1 in the ellipse's own axes.
+// Distance to first order, f / |grad f| with f = (p/a)^2 + (q/b)^2 - 1 in the ellipse's own axes,
+// and the sine between the edge's tangent and the ellipse's.
 class EllipseAt {
  public:
-  explicit EllipseAt(const Vector5d& e)
-      : center_(e.head<2>()), a_(e[2]), b_(e[3]), cos_(std::cos(e[4])), sin_(std::sin(e[4])) {}
+  using Slopes = Eigen::Matrix<double, 2, 5>;
 
-  // (distance, angle) of one point.
-  Eigen::Vector2d residual(const EdgePoint& point) const {
+  explicit EllipseAt(const Vector5d& e)
+      : center_(e.head<2>()),
+        per_a2_(2.0 / (e[2] * e[2])),
+        per_b2_(2.0 / (e[3] * e[3])),
+        per_a_(-2.0 / e[2]),
+        per_b_(-2.0 / e[3]),
+        cos_(std::cos(e[4])),
+        sin_(std::sin(e[4])) {}
+
+  // (distance, angle) of one point; with `slopes`, also how they change with (u, v, a, b, angle).
+  Eigen::Vector2d residual(const EdgePoint& point, Slopes* slopes = nullptr) const {
     const Eigen::Vector2d w = point.uv.cast<double>() - center_;
     const double p = cos_ * w.x() + sin_ * w.y(), q = -sin_ * w.x() + cos_ * w.y();
-    const double gp = 2.0 * p / (a_ * a_), gq = 2.0 * q / (b_ * b_);
+    const double gp = per_a2_ * p, gq = per_b2_ * q;  // the gradient of f
     const double f = 0.5 * (gp * p + gq * q) - 1.0;
-    const double slope = std::sqrt(gp * gp + gq * gq) + 1e-12;
+    const double per_slope = 1.0 / (std::sqrt(gp * gp + gq * gq) + 1e-12);
     const double nx = point.normal.x(), ny = point.normal.y();
     const double tp = -cos_ * ny + sin_ * nx, tq = sin_ * ny + cos_ * nx;  // the tangent
-    return {f / slope, (gp * tp + gq * tq) / slope};
+    const Eigen::Vector2d r(f * per_slope, (gp * tp + gq * tq) * per_slope);
+    if (slopes == nullptr) return r;
+    // f and its gradient change by df and (dgp, dgq), the tangent by dt.
+    const auto column = [&](int i, double df, double dgp, double dgq, double dt) {
+      const double dslope = (gp * dgp + gq * dgq) * per_slope;
+      slopes->col(i) << (df - r[0] * dslope) * per_slope,
+          (dgp * tp + dgq * tq + dt - r[1] * dslope) * per_slope;
+    };
+    column(0, -cos_ * gp + sin_ * gq, -cos_ * per_a2_, sin_ * per_b2_, 0.0);
+    column(1, -sin_ * gp - cos_ * gq, -sin_ * per_a2_, -cos_ * per_b2_, 0.0);
+    column(2, 0.5 * per_a_ * gp * p, per_a_ * gp, 0.0, 0.0);
+    column(3, 0.5 * per_b_ * gq * q, 0.0, per_b_ * gq, 0.0);
+    column(4, gp * q - gq * p, per_a2_ * q, -per_b2_ * p, gp * tq - gq * tp);
+    return r;
   }
 
  private:
   Eigen::Vector2d center_;
-  double a_, b_, cos_, sin_;
+  double per_a2_, per_b2_, per_a_, per_b_, cos_, sin_;
 };
 
 struct Cost {
@@ -144,23 +165,12 @@ Cost cost_of(const Vector5d& e, std::span<const EdgePoint> points, const EdgeNoi
 Normal normal_equations(const Vector5d& e,
                         std::span<const EdgePoint> points,
                         const EdgeNoise& noise) {
-  // Derivatives by differences: 1e-4 px and 1e-6 rad leave ten digits of a double's sixteen.
-  const Vector5d steps{1e-4, 1e-4, 1e-4, 1e-4, 1e-6};
   const EllipseAt here(e);
-  std::array<EllipseAt, 5> moved{here, here, here, here, here};
-  for (int i = 0; i < 5; ++i) {
-    Vector5d other = e;
-    other[i] += steps[i];
-    moved[static_cast<std::size_t>(i)] = EllipseAt(other);
-  }
   const Eigen::Vector2d weights(1.0 / noise.position_px, 1.0 / noise.direction_rad);
   Normal sums;
   for (const EdgePoint& point : points) {
-    const Eigen::Vector2d r = here.residual(point);
-    Eigen::Matrix<double, 2, 5> J;
-    for (int i = 0; i < 5; ++i) {
-      J.col(i) = (moved[static_cast<std::size_t>(i)].residual(point) - r) / steps[i];
-    }
+    EllipseAt::Slopes J;
+    const Eigen::Vector2d r = here.residual(point, &J);
     const Eigen::Vector2d scaled = r.cwiseProduct(weights);
     J = weights.asDiagonal() * J;
     sums.H.noalias() += J.transpose() * J;

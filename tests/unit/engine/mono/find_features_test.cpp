@@ -104,6 +104,24 @@ TEST(FindImageFeatures, FindsTheCornersOfASquareToATenthOfAPixel) {
   }
 }
 
+// It was lost: every chain had to have a point 11 times above what noise makes of the gradient.
+TEST(FindImageFeatures, FindsTheCornersOfASquareThreeTimesBrighterThanTheNoise) {
+  constexpr double kNoise = 3.0;
+  const Square square{70.3, 60.7, 40.2, 0.3};
+  GreyImage image = testing::paint(140, 120, [&](double x, double y) {
+    return square.holds(x, y) ? 100.0 + 3.0 * kNoise : 100.0;
+  });
+  Random random(5);
+  for (std::uint8_t& pixel : image.pixels)
+    pixel = static_cast<std::uint8_t>(std::lround(pixel + kNoise * random.normal()));
+  const ImageFeatures features = find_image_features(image, {}, {});
+  for (int i = 0; i < 4; ++i) {
+    const int found = nearest(features, FeatureType::kVertex, square.corner(i));
+    ASSERT_GE(found, 0) << i;
+    EXPECT_LT((features.points[static_cast<std::size_t>(found)].uv - square.corner(i)).norm(), 1.5);
+  }
+}
+
 TEST(FindImageFeatures, PutsTheBrightSideOfASegmentOnTheLeft) {
   const GreyImage image =
       testing::paint(80, 60, [](double x, double y) { return y < 20.0 + 0.3 * x ? 200.0 : 50.0; });
