@@ -78,8 +78,8 @@ std::vector<DescriptorCodes> all_codes(const Entries& entries,
   return codes;
 }
 
-// Many neighbours are asked for, and what proposes a pose need not be the very nearest: with 8
-// tails read a neighbour, and 256 more, nothing else was found at twice the time.
+// Many neighbours are asked for, and what proposes a pose need not be the very nearest: with 4 and 8
+// tails read for each nothing else was found.
 CodedSearchOptions scan_options() {
   return {.list_share = 1.0, .refined = 32, .refined_a_neighbour = 2.0};
 }
