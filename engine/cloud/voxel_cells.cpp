@@ -58,35 +58,81 @@ struct Bounds {
   }
 };
 
-std::vector<std::uint32_t> order_by_key(std::span<const Eigen::Vector3f> points,
-                                        std::vector<std::uint32_t> finite,
-                                        double cells_per_m,
-                                        const Bounds& bounds,
-                                        const RunContext& context) {
-  const int shift_y = bounds.bits(0);
-  const int shift_z = shift_y + bounds.bits(1);
+// A cell's numbers, counted from the lowest, one above the other in 64 bits, x lowest.
+class KeyLayout {
+ public:
+  // The numbers must fit 64 bits together.
+  explicit KeyLayout(const Bounds& bounds)
+      : low_(bounds.low), bits_{bounds.bits(0), bounds.bits(1), bounds.bits(2)} {}
+
+  std::uint64_t key_of(const Cell& cell) const {
+    std::uint64_t key = 0;
+    for (int axis = 0, shift = 0; axis < 3; shift += bits_[at(axis++)]) {
+      const std::uint64_t number =
+          static_cast<std::uint64_t>(cell[at(axis)]) - static_cast<std::uint64_t>(low_[at(axis)]);
+      // A shift by 64 would be undefined, and means that the axes above have one cell only.
+      if (shift < 64) key |= number << shift;
+    }
+    return key;
+  }
+  Cell cell_of(std::uint64_t key) const {
+    Cell cell = low_;
+    for (int axis = 0, shift = 0; axis < 3; shift += bits_[at(axis++)]) {
+      const int bits = bits_[at(axis)];
+      if (bits == 0) continue;  // one cell only
+      const std::uint64_t number = key >> shift & (~std::uint64_t{0} >> (64 - bits));
+      cell[at(axis)] =
+          static_cast<std::int64_t>(static_cast<std::uint64_t>(low_[at(axis)]) + number);
+    }
+    return cell;
+  }
+
+ private:
+  static std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
+
+  Cell low_;
+  std::array<int, 3> bits_;
+};
+
+// One more point of a cell, behind those before it.
+void append(const Cell& cell, std::uint32_t place, std::vector<VoxelCell>& cells) {
+  if (!cells.empty() && cells.back().x == cell[0] && cells.back().y == cell[1] &&
+      cells.back().z == cell[2]) {
+    cells.back().end = place + 1;
+  } else {
+    cells.push_back({cell[0], cell[1], cell[2], place, place + 1});
+  }
+}
+
+VoxelCells group_by_key(std::span<const Eigen::Vector3f> points,
+                        std::vector<std::uint32_t> finite,
+                        double cells_per_m,
+                        const Bounds& bounds,
+                        const RunContext& context) {
+  const KeyLayout layout(bounds);
   std::vector<Keyed> items;
   items.reserve(finite.size());
   for (const std::uint32_t i : finite) {
-    const Cell cell = cell_of(points[i], cells_per_m);
-    auto from_low = [&](std::size_t axis) {
-      return static_cast<std::uint64_t>(cell[axis]) - static_cast<std::uint64_t>(bounds.low[axis]);
-    };
-    // A shift by 64 would be undefined, and means that the axes above have one cell only.
-    std::uint64_t key = from_low(0);
-    if (shift_y < 64) key |= from_low(1) << shift_y;
-    if (shift_z < 64) key |= from_low(2) << shift_z;
-    items.push_back({key, i});
+    items.push_back({layout.key_of(cell_of(points[i], cells_per_m)), i});
   }
   sort_by_key(items, context);
-  for (std::size_t k = 0; k < items.size(); ++k) finite[k] = items[k].index;
-  return finite;
+  VoxelCells result;
+  result.order = std::move(finite);
+  for (std::uint32_t k = 0; k < items.size(); ++k) {
+    result.order[k] = items[k].index;
+    if (k > 0 && items[k].key == items[k - 1].key) {
+      result.cells.back().end = k + 1;
+    } else {
+      append(layout.cell_of(items[k].key), k, result.cells);
+    }
+  }
+  return result;
 }
 
 // For extents whose cell numbers do not fit one 64-bit key together.
-std::vector<std::uint32_t> order_by_compare(std::span<const Eigen::Vector3f> points,
-                                            std::vector<std::uint32_t> finite,
-                                            double cells_per_m) {
+VoxelCells group_by_compare(std::span<const Eigen::Vector3f> points,
+                            std::vector<std::uint32_t> finite,
+                            double cells_per_m) {
   std::vector<std::pair<Cell, std::uint32_t>> items;
   items.reserve(finite.size());
   for (const std::uint32_t i : finite) {
@@ -94,8 +140,14 @@ std::vector<std::uint32_t> order_by_compare(std::span<const Eigen::Vector3f> poi
     items.push_back({{cell[2], cell[1], cell[0]}, i});
   }
   std::sort(items.begin(), items.end());
-  for (std::size_t k = 0; k < items.size(); ++k) finite[k] = items[k].second;
-  return finite;
+  VoxelCells result;
+  result.order = std::move(finite);
+  for (std::uint32_t k = 0; k < items.size(); ++k) {
+    const auto& [cell, index] = items[k];
+    result.order[k] = index;
+    append({cell[2], cell[1], cell[0]}, k, result.cells);
+  }
+  return result;
 }
 
 auto rank(const VoxelCell& cell) { return std::tie(cell.z, cell.y, cell.x); }
@@ -123,22 +175,10 @@ VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
     finite.push_back(static_cast<std::uint32_t>(i));
     bounds.add(cell_of(points[i], cells_per_m));
   }
-  VoxelCells result;
-  if (finite.empty()) return result;
+  if (finite.empty()) return {};
   const bool fits = bounds.bits(0) + bounds.bits(1) + bounds.bits(2) <= 64;
-  result.order = fits ? order_by_key(points, std::move(finite), cells_per_m, bounds, context)
-                      : order_by_compare(points, std::move(finite), cells_per_m);
-  for (std::uint32_t k = 0; k < result.order.size(); ++k) {
-    if (k % kStep == 0) context.check("voxels");
-    const Cell cell = cell_of(points[result.order[k]], cells_per_m);
-    const VoxelCell next{cell[0], cell[1], cell[2], k, k + 1};
-    if (!result.cells.empty() && rank(result.cells.back()) == rank(next)) {
-      result.cells.back().end = k + 1;
-    } else {
-      result.cells.push_back(next);
-    }
-  }
-  return result;
+  return fits ? group_by_key(points, std::move(finite), cells_per_m, bounds, context)
+              : group_by_compare(points, std::move(finite), cells_per_m);
 }
 
 std::span<const VoxelCell> find_row(const VoxelCells& cells,

@@ -112,7 +112,7 @@ std::string nothing_left(const SearchResult& search,
                          const CleanQuery& query,
                          const ViewCache& views) {
   if (search.lost_at == "density") {
-    return "keypoints: the cloud's points are " + std::to_string(query.spacing_m) +
+    return "keypoints: the cloud's points are " + std::to_string(query.scale.spacing_m) +
            " m apart, too far for every entry asked";
   }
   if (search.lost_at == "keypoints") {
@@ -129,7 +129,7 @@ void add_warnings(const CleanQuery& query,
                   const Verdict& verdict,
                   const Entries& entries,
                   QueryResult& answer) {
-  if (units_look_wrong(measure_scale(query.cloud), EntryKind::kPlace)) {
+  if (units_look_wrong(query.scale, EntryKind::kPlace)) {
     answer.warnings.emplace_back("units_suspect");
   }
   if (verdict.judged.empty()) return;
@@ -140,7 +140,9 @@ void add_warnings(const CleanQuery& query,
   if (best.evidence.overlap < kLowOverlap) answer.warnings.emplace_back("low_overlap");
   if (best.evidence.observability < kPlanar) answer.warnings.emplace_back("planar_scene");
   answer.query.density_ratio =
-      query.spacing_m > 0.0 ? entries[best.entry].record().options.voxel_m / query.spacing_m : 1.0;
+      query.scale.spacing_m > 0.0
+          ? entries[best.entry].record().options.voxel_m / query.scale.spacing_m
+          : 1.0;
   if (answer.query.density_ratio < 1.0 / kDensity) answer.warnings.emplace_back("density_mismatch");
 }
 

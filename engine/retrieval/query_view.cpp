@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "engine/base/parallel.hpp"
 #include "engine/cloud/join_clouds.hpp"
 #include "engine/cloud/prepare_cloud.hpp"
 #include "engine/cloud/resolution.hpp"
@@ -89,13 +90,19 @@ std::vector<RangeImage> range_images(const PointCloud& cloud, double finest_step
 CleanQuery clean_query(std::vector<QueryCloud> clouds, const RunContext& context) {
   CloudCounts counts;
   PointCloud cloud = join_clouds(std::move(clouds), counts, context);
-  const double spacing_m = cloud.size() >= 4 ? measure_scale(cloud, context).spacing_m : 0.0;
+  CloudScale scale;
+  std::vector<RangeImage> ranges;
+  parallel_chunks(2, context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t task = begin; task < end; ++task) {
+      if (task == 0 && cloud.size() >= 4) scale = measure_scale(cloud, context);
+      if (task == 1) ranges = range_images(cloud, kSightStepRad);
+    }
+  });
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3f& point : cloud.points) centre += point.cast<double>();
   if (!cloud.empty()) centre /= static_cast<double>(cloud.size());
   context.check("preprocess");
-  std::vector<RangeImage> ranges = range_images(cloud, kSightStepRad);
-  return {std::move(cloud), counts, spacing_m, centre, std::move(ranges)};
+  return {std::move(cloud), counts, scale, centre, std::move(ranges)};
 }
 
 CleanQuery clean_query(const PointCloud& cloud, const RunContext& context) {
@@ -133,7 +140,7 @@ CleanQuery dense_part(const CleanQuery& query, double spacing_m, const RunContex
     }
   }
   dense.counts = query.counts;
-  dense.spacing_m = query.spacing_m;
+  dense.scale = query.scale;
   dense.centre = query.centre;
   return dense;
 }

@@ -7,6 +7,7 @@
 
 #include "engine/base/run_context.hpp"
 #include "engine/base/stage_timings.hpp"
+#include "engine/cloud/resolution.hpp"
 #include "engine/features/range_noise.hpp"
 #include "engine/registration/plane_layout.hpp"
 #include "engine/registration/pose_score.hpp"
@@ -21,7 +22,7 @@ namespace landmarkdb {
 struct CleanQuery {
   PointCloud cloud;  // sanitised, with a viewpoint
   CloudCounts counts;
-  double spacing_m = 0.0;
+  CloudScale scale;                                  // zeros for fewer than four points
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the points: where two poses are compared
   std::vector<RangeImage> ranges;  // free space as the sensor saw it, one for each viewpoint
 };

@@ -116,7 +116,7 @@ void search_objects(const SearchInput& input, SearchResult& result) {
     if (view.prepared.size() == 0) {
       result.lost_at = "density";
       if (result.needs_voxel_m == 0.0)
-        result.needs_voxel_m = input.query.spacing_m / kMostSpacingVoxels;
+        result.needs_voxel_m = input.query.scale.spacing_m / kMostSpacingVoxels;
       continue;
     }
     if (view.descriptors.size() == 0) continue;

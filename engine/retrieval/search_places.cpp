@@ -180,9 +180,9 @@ void match_places(const SearchInput& input, SearchResult& result) {
                  [&](std::size_t entry) { return input.wanted[entry]; });
     if (asked.empty()) continue;
     const bool named = !input.options.scenes.empty() && asked.size() < level.entries.size();
-    if (input.query.spacing_m > kMostSpacingVoxelsOfPlace * level.options.voxel_m) {
+    if (input.query.scale.spacing_m > kMostSpacingVoxelsOfPlace * level.options.voxel_m) {
       result.lost_at = "density";
-      result.needs_voxel_m = input.query.spacing_m / kMostSpacingVoxelsOfPlace;
+      result.needs_voxel_m = input.query.scale.spacing_m / kMostSpacingVoxelsOfPlace;
       continue;
     }
     const QueryView& view = input.views.at(query_features(level.options, input.options));

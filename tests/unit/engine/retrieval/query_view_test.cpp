@@ -32,7 +32,7 @@ TEST(CleanQuery, CountsWhatItDropsAndLooksFromZero) {
   ASSERT_EQ(query.cloud.viewpoints.size(), 1U);
   EXPECT_TRUE(query.cloud.viewpoints[0].isZero());
   EXPECT_TRUE(query.centre.isApprox(Eigen::Vector3d(4.5, 28.5, 2.0), 1e-6));
-  EXPECT_GT(query.spacing_m, 0.0);
+  EXPECT_GT(query.scale.spacing_m, 0.0);
 }
 
 TEST(CleanQuery, LooksFromTheViewpointTheCloudHas) {
@@ -48,7 +48,7 @@ TEST(CleanQuery, LooksFromTheViewpointTheCloudHas) {
 TEST(CleanQuery, TakesAnEmptyCloud) {
   const CleanQuery query = clean_query(PointCloud{});
   EXPECT_EQ(query.cloud.size(), 0U);
-  EXPECT_EQ(query.spacing_m, 0.0);
+  EXPECT_EQ(query.scale.spacing_m, 0.0);
   EXPECT_TRUE(query.centre.isZero());
 }
 
