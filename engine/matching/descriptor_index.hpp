@@ -42,7 +42,7 @@ class DescriptorIndex {
 };
 
 // Compares each query with each stored descriptor (N x kShotLength, row-major; copied). The oracle
-// of all others, and the fastest up to some 100,000 descriptors. Ranks l2, correlation and
+// of all others. Ranks l2, correlation and
 // bhattacharyya by a matrix product and evaluates the candidates again, so that the answer is the
 // same on every machine. Throws like search().
 std::unique_ptr<DescriptorIndex> make_exact_index(std::span<const float> values, Measure measure);

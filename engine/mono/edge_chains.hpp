@@ -20,8 +20,8 @@ struct EdgeChains {
 
 // Links each edge point with the nearest one ahead of it and behind it whose direction turns by
 // less than 60 degrees, and keeps the chains of at least `min_points`: whole where one point has
-// high contrast, else the parts that run straight (keep_straight_runs). At a junction the
-// straightest nearest link wins, and the others end there.
+// high contrast, else the parts that run straight, which may be shorter (keep_straight_runs). At a
+// junction the straightest nearest link wins, and the others end there.
 EdgeChains link_edges(const EdgeMap& map, std::size_t min_points, const RunContext& run);
 
 }  // namespace landmarkdb

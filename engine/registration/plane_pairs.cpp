@@ -6,6 +6,10 @@
 #include <cstring>
 
 namespace landmarkdb {
+
+static_assert(PointGroups::kLanes == PlaneSummer::kLanes && PlaneSummer::kNumbers == 8,
+              "pairs are written as they are added up");
+
 namespace {
 
 constexpr std::size_t kLanes = PointGroups::kLanes;

@@ -65,8 +65,9 @@ LANDMARKDB_INLINE void find_in_table(const SurfaceGrid::TableView& view,
   for (int axis = 2; axis >= 0; --axis) {
     const Ints cell = cells_on_axis(point[axis] * view.inverse_cell);
     const Ints at = (cell >> SurfaceGrid::kBlockBits) - view.first[axis];
-    outside |= (at < 0) | (at >= view.size[axis]);
-    index = index * view.size[axis] + at;
+    const Ints off = (at < 0) | (at >= view.size[axis]);
+    outside |= off;
+    index = index * view.size[axis] + (at & ~off);  // what is off might not fit
     inner = (inner << SurfaceGrid::kBlockBits) | (cell & ((1 << SurfaceGrid::kBlockBits) - 1));
   }
   index = outside ? Ints{} : index + 1;

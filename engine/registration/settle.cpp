@@ -47,6 +47,7 @@ void settle_pose(const SurfaceGrid& target,
   const PointGroups& all = test.groups();
   const std::size_t groups =
       std::min((options.points + PointGroups::kLanes - 1) / PointGroups::kLanes, all.groups());
+  if (groups == 0) return;
   const std::size_t n = std::min(groups * PointGroups::kLanes, all.size());
   constexpr std::size_t kFewestPairs = 8;
   // As if this share of the points held every freedom where it is: what the surface does not fix
@@ -68,7 +69,7 @@ void settle_pose(const SurfaceGrid& target,
     A.diagonal().tail<3>().array() += hold * moved.spread_m2;
     const Vector6f x = A.ldlt().solve(sums.b.cast<float>());
     const float angle = x.tail<3>().norm();
-    if (!std::isfinite(angle)) return;
+    if (!x.allFinite()) return;
     const Eigen::Matrix3f turn =
         angle > 1e-6F ? Eigen::AngleAxisf(angle, x.tail<3>() / angle).toRotationMatrix()
                       : Eigen::Matrix3f::Identity();

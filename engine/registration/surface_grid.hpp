@@ -114,7 +114,7 @@ class SurfaceGrid {
   // Clamped before the cast: a float beyond int is undefined behaviour, and nothing is stored out
   // there. Rounded down without a call, which SSE2 has no instruction for.
   static int cell_on_axis(float scaled) {
-    const float clamped = std::min(std::max(scaled, -kFarthestCell), kFarthestCell);
+    const float clamped = std::min(kFarthestCell, std::max(-kFarthestCell, scaled));  // NaN: far
     const int cut = static_cast<int>(clamped);
     return cut - (static_cast<float>(cut) > clamped ? 1 : 0);
   }

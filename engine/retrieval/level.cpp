@@ -1,6 +1,7 @@
 #include "engine/retrieval/level.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "engine/base/error.hpp"
@@ -28,16 +29,17 @@ std::span<const float> values_of(const Entry& entry,
   return held->descriptors.values;
 }
 
-// Rows whose code is zero: as near to one query as to another.
+// Rows whose codes lie where no descriptor's do: farther from every query than those of others.
 DescriptorCodes blank_codes(std::size_t rows) {
   DescriptorCodes codes;
   if (rows == 0) return codes;
-  codes.centres.assign(kCodeLength, 0);
+  constexpr std::int8_t kOutermost = std::numeric_limits<std::int8_t>::max();
+  codes.centres.assign(kCodeLength, kOutermost);
   codes.list_start = {0, static_cast<std::uint32_t>(rows)};
   for (std::size_t row = 0; row < rows; ++row)
     codes.rows.push_back(static_cast<std::uint32_t>(row));
-  codes.codes.assign(rows * kCodeLength, 0);
-  codes.tails.assign(rows * kCodeLength, 0);
+  codes.codes.assign(rows * kCodeLength, kOutermost);
+  codes.tails.assign(rows * kCodeLength, kOutermost);
   return codes;
 }
 
@@ -78,8 +80,8 @@ std::vector<DescriptorCodes> all_codes(const Entries& entries,
   return codes;
 }
 
-// Many neighbours are asked for, and what proposes a pose need not be the very nearest: with 4 and 8
-// tails read for each nothing else was found.
+// Many neighbours are asked for, and what proposes a pose need not be the very nearest: with 4 and
+// 8 tails read for each nothing else was found.
 CodedSearchOptions scan_options() {
   return {.list_share = 1.0, .refined = 32, .refined_a_neighbour = 2.0};
 }

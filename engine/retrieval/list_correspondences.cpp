@@ -95,17 +95,18 @@ void cut_to_size(const std::vector<std::uint32_t>& ranks, CorrespondenceList& li
   list.records = std::move(records);
 }
 
-// A level's own distances are those of codes: of what is listed the true ones are told, where both
-// descriptors are in memory.
+// A level's own distances are those of codes: of what is listed the true ones are told, but of
+// entries whose descriptors are not always in memory, lest an answer depend on what is.
 float distance_of(const Correspondence& pair,
                   const EntryMatches& matches,
                   const Entry& entry,
                   Measure measure) {
   const DescriptorSet& stored = entry.record().descriptors;
-  if (measure != Measure::kL2 || stored.values.empty()) return pair.distance;
-  return dissimilarity(Measure::kL2,
-                       descriptor_row(matches.view->descriptors.values, pair.query),
-                       descriptor_row(stored.values, pair.target));
+  const bool always_there = entry.stored.source == nullptr && !stored.values.empty();
+  if (measure != Measure::kL2 || !always_there) return pair.distance;
+  return normalised_dissimilarity(Measure::kL2,
+                                  descriptor_row(matches.view->descriptors.values, pair.query),
+                                  descriptor_row(stored.values, pair.target));
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ struct LoadedScenes {
 // Never changes once built, but for which scenes are in memory; query() is thread-safe and its
 // answer does not depend on that. Building it derives what the search needs from each record
 // (descriptor index, verification grid); of scenes that have a source and are too many to be
-// searched exactly the codes, keypoints and wide grids are kept, the rest is read when a query
+// scanned the codes, keypoints and wide grids are kept, the rest is read when a query
 // looks at them closely. A scene that turns out to be damaged then answers nothing any more.
 class Localizer {
  public:

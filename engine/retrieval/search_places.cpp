@@ -57,7 +57,7 @@ void match_level(const SearchInput& input,
   const StageTimer timer(input.timings.match);
   const std::size_t k = neighbours_for(level.entries.size(), view.descriptors.size());
   std::vector<DescriptorMatch> found;
-  // The level's own index is Euclidean; another is made when it is asked for.
+  // The level's own index is of codes, by l2; another is made when it is asked for.
   std::shared_ptr<const DescriptorIndex> other;
   if (input.options.measure != Measure::kL2 || input.options.search != Search::kExact) {
     other = index_over(input, level);

@@ -123,6 +123,21 @@ TEST(PairKernels, PairEachPointWithTheSurfelNear) {
   }
 }
 
+// Blocks far above a wide, flat table have numbers that no int holds.
+TEST(PairKernels, MeetNothingFarFromAWideFlatTable) {
+  const std::vector<Eigen::Vector3f> corners{{0, 0, 0}, {818, 0, 0}, {0, 818, 0}, {818, 818, 0}};
+  const std::vector<Eigen::Vector3f> up(4, Eigen::Vector3f::UnitZ());
+  const SurfaceGrid grid(corners, up, 0.05, 2);
+  const std::vector<Eigen::Vector3f> points{
+      {0, 0, 0}, {818, 818, 0}, {1, 1, 1e3F}, {-1e6F, 5e5F, 1e7F}, {818, 818, 2e4F}};
+  const std::vector<Eigen::Vector3f> normals(points.size(), Eigen::Vector3f::UnitZ());
+  const std::vector<float> fits =
+      fits_of(pair_kernels(), grid, PointGroups(points, normals), PointMotion{});
+  EXPECT_EQ(fits[0], 1.0F);
+  EXPECT_EQ(fits[1], 1.0F);
+  for (std::size_t i = 2; i < points.size(); ++i) EXPECT_EQ(fits[i], 0.0F) << i;
+}
+
 TEST(PairKernels, MeanFitIsTheMeanOverThePointsOrGivesUp) {
   const Scene scene(70);
   const SurfaceGrid grid = scene.grid();

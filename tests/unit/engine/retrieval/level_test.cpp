@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/engine/retrieval/scene_shelf.hpp"
+
 namespace landmarkdb {
 namespace {
 
@@ -64,6 +66,21 @@ TEST(MakeLevel, HoldsTheChosenEntriesAlone) {
   EXPECT_EQ(level.first_row, (std::vector<std::size_t>{0, 2, 5}));
   EXPECT_EQ(level.index->size(), 5U);
   EXPECT_EQ(level.entry_of_row(2), 1U);
+}
+
+TEST(MakeLevel, PutsRowsOfADamagedEntryBehindAllOthers) {
+  std::vector<Entry> entries;
+  entries.push_back(entry_of(EntryKind::kPlace, 0.05, 40, 10));
+  entries.push_back(entry_of(EntryKind::kPlace, 0.05, 3, 60));
+  testing::put_on_shelf(entries[0].stored)->damaged = true;
+  // As like one row as another, and like the mean of many descriptors.
+  const std::vector<float> query(kShotLength, 1.0F);
+  for (const std::size_t most_scanned : {100U, 1U}) {
+    const Level level = make_level(entries, std::vector<std::size_t>{0, 1}, {}, most_scanned);
+    std::vector<DescriptorMatch> found;
+    level.index->search(query, 3, found, {});
+    for (const DescriptorMatch& match : found) EXPECT_GE(match.index, 40U) << most_scanned;
+  }
 }
 
 TEST(MakeLevel, FindsTheSameByAllCodesAndByLists) {
