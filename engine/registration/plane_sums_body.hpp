@@ -2,41 +2,7 @@
 // and under a target pragma. `Floats` and `Ints` are vectors of kLanes numbers that the compiler
 // lowers to what the target has; the operations and their order are the same for all.
 
-#define LANDMARKDB_INLINE [[gnu::always_inline]] inline
-
-LANDMARKDB_INLINE Floats load(const float* p) {
-  Floats v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
-
-LANDMARKDB_INLINE float add_up(Floats v) {
-  float lane[kLanes];
-  __builtin_memcpy(lane, &v, sizeof v);
-  for (std::size_t width = kLanes / 2; width > 0; width /= 2) {
-    for (std::size_t i = 0; i < width; ++i) lane[i] += lane[i + width];
-  }
-  return lane[0];
-}
-
-// exp(x) for x <= 0 to 2e-7, relative: 2^y with y = x log2(e) in a whole and a part of -1/2 .. 1/2,
-// the latter by its series.
-LANDMARKDB_INLINE Floats exponential(Floats x) {
-  const Floats lowest = Floats{} - 87.0F;  // below that, a float is denormal
-  const Floats y = (x > lowest ? x : lowest) * 1.44269504F;
-  const Ints whole = __builtin_convertvector(y - 0.5F, Ints);
-  const Floats f = (y - __builtin_convertvector(whole, Floats)) * 0.693147181F;
-  Floats p = f * (1.0F / 720.0F) + (1.0F / 120.0F);
-  p = p * f + (1.0F / 24.0F);
-  p = p * f + (1.0F / 6.0F);
-  p = p * f + 0.5F;
-  p = p * f + 1.0F;
-  p = p * f + 1.0F;
-  const Ints bits = (whole + 127) << 23;
-  Floats power;
-  __builtin_memcpy(&power, &bits, sizeof power);
-  return p * power;
-}
+#include "engine/registration/float_lanes_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
 
 LANDMARKDB_INLINE Floats weight_of(PairWeight weight, Floats squared, float factor) {
   if (weight == PairWeight::kGaussian) return exponential(squared * factor);

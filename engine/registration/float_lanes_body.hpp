@@ -1,0 +1,39 @@
+// No include guard: the bodies of plane_sums.cpp and plane_pairs.cpp include this once for each
+// instruction set, inside a namespace and under a target pragma, and undefine LANDMARKDB_INLINE at
+// their ends. `Floats` and `Ints` are vectors of kLanes numbers that the compiler lowers to what
+// the target has; the operations and their order are the same for all.
+
+#define LANDMARKDB_INLINE [[gnu::always_inline]] inline
+
+LANDMARKDB_INLINE Floats load(const float* p) {
+  Floats v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+
+LANDMARKDB_INLINE float add_up(Floats v) {
+  float lane[kLanes];
+  __builtin_memcpy(lane, &v, sizeof v);
+  for (std::size_t width = kLanes / 2; width > 0; width /= 2) {
+    for (std::size_t i = 0; i < width; ++i) lane[i] += lane[i + width];
+  }
+  return lane[0];
+}
+
+// exp_of_negative() of engine/base/fast_exp.hpp, sixteen at a time.
+LANDMARKDB_INLINE Floats exponential(Floats x) {
+  const Floats lowest = Floats{} - 87.0F;
+  const Floats y = (x > lowest ? x : lowest) * 1.44269504F;
+  const Ints whole = __builtin_convertvector(y - 0.5F, Ints);
+  const Floats f = (y - __builtin_convertvector(whole, Floats)) * 0.693147181F;
+  Floats p = f * (1.0F / 720.0F) + (1.0F / 120.0F);
+  p = p * f + (1.0F / 24.0F);
+  p = p * f + (1.0F / 6.0F);
+  p = p * f + 0.5F;
+  p = p * f + 1.0F;
+  p = p * f + 1.0F;
+  const Ints bits = (whole + 127) << 23;
+  Floats power;
+  __builtin_memcpy(&power, &bits, sizeof power);
+  return p * power;
+}
