@@ -4,12 +4,13 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <string>
 #include <tuple>
-#include <utility>
 
 #include "engine/base/error.hpp"
+#include "engine/base/round_down.hpp"
 #include "engine/cloud/sort_by_key.hpp"
 
 namespace landmarkdb {
@@ -26,14 +27,12 @@ constexpr double kLargestCell = 0x1p62;  // keeps differences of cell numbers in
                   " m: too small for points as far out as " + std::to_string(coordinate) + " m");
 }
 
-// Rounded down without a call, which SSE2 has no instruction for.
 Cell cell_of(const Eigen::Vector3f& p, double cells_per_m) {
   Cell cell{};
   for (int axis = 0; axis < 3; ++axis) {
     const double number = static_cast<double>(p[axis]) * cells_per_m;
     if (!(std::abs(number) < kLargestCell)) refuse(cells_per_m, p[axis]);
-    const auto cut = static_cast<std::int64_t>(number);
-    cell[static_cast<std::size_t>(axis)] = cut - (static_cast<double>(cut) > number ? 1 : 0);
+    cell[static_cast<std::size_t>(axis)] = round_down<std::int64_t>(number);
   }
   return cell;
 }
@@ -94,18 +93,28 @@ class KeyLayout {
   std::array<int, 3> bits_;
 };
 
-// One more point of a cell, behind those before it.
-void append(const Cell& cell, std::uint32_t place, std::vector<VoxelCell>& cells) {
-  if (!cells.empty() && cells.back().x == cell[0] && cells.back().y == cell[1] &&
-      cells.back().z == cell[2]) {
-    cells.back().end = place + 1;
-  } else {
-    cells.push_back({cell[0], cell[1], cell[2], place, place + 1});
+// Makes cells of the items' runs of one key; `cell_of` turns a key into its cell.
+template <typename Item, typename CellOf>
+VoxelCells group_sorted(const std::vector<Item>& items,
+                        const CellOf& cell_of,
+                        const RunContext& context) {
+  VoxelCells result;
+  result.order.reserve(items.size());
+  for (std::uint32_t k = 0; k < items.size(); ++k) {
+    if (k % kStep == 0) context.check("voxels");
+    result.order.push_back(items[k].index);
+    if (k > 0 && items[k].key == items[k - 1].key) {
+      result.cells.back().end = k + 1;
+    } else {
+      const Cell cell = cell_of(items[k].key);
+      result.cells.push_back({cell[0], cell[1], cell[2], k, k + 1});
+    }
   }
+  return result;
 }
 
 VoxelCells group_by_key(std::span<const Eigen::Vector3f> points,
-                        std::vector<std::uint32_t> finite,
+                        const std::vector<std::uint32_t>& finite,
                         double cells_per_m,
                         const Bounds& bounds,
                         const RunContext& context) {
@@ -116,38 +125,33 @@ VoxelCells group_by_key(std::span<const Eigen::Vector3f> points,
     items.push_back({layout.key_of(cell_of(points[i], cells_per_m)), i});
   }
   sort_by_key(items, context);
-  VoxelCells result;
-  result.order = std::move(finite);
-  for (std::uint32_t k = 0; k < items.size(); ++k) {
-    result.order[k] = items[k].index;
-    if (k > 0 && items[k].key == items[k - 1].key) {
-      result.cells.back().end = k + 1;
-    } else {
-      append(layout.cell_of(items[k].key), k, result.cells);
-    }
-  }
-  return result;
+  return group_sorted(
+      items, [&](std::uint64_t key) { return layout.cell_of(key); }, context);
 }
 
 // For extents whose cell numbers do not fit one 64-bit key together.
 VoxelCells group_by_compare(std::span<const Eigen::Vector3f> points,
-                            std::vector<std::uint32_t> finite,
-                            double cells_per_m) {
-  std::vector<std::pair<Cell, std::uint32_t>> items;
+                            const std::vector<std::uint32_t>& finite,
+                            double cells_per_m,
+                            const RunContext& context) {
+  struct Item {
+    Cell key;  // z first
+    std::uint32_t index;
+    auto operator<=>(const Item&) const = default;
+  };
+  std::vector<Item> items;
   items.reserve(finite.size());
   for (const std::uint32_t i : finite) {
     const Cell cell = cell_of(points[i], cells_per_m);
     items.push_back({{cell[2], cell[1], cell[0]}, i});
   }
   std::sort(items.begin(), items.end());
-  VoxelCells result;
-  result.order = std::move(finite);
-  for (std::uint32_t k = 0; k < items.size(); ++k) {
-    const auto& [cell, index] = items[k];
-    result.order[k] = index;
-    append({cell[2], cell[1], cell[0]}, k, result.cells);
-  }
-  return result;
+  return group_sorted(
+      items,
+      [](const Cell& key) {
+        return Cell{key[2], key[1], key[0]};
+      },
+      context);
 }
 
 auto rank(const VoxelCell& cell) { return std::tie(cell.z, cell.y, cell.x); }
@@ -177,8 +181,8 @@ VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
   }
   if (finite.empty()) return {};
   const bool fits = bounds.bits(0) + bounds.bits(1) + bounds.bits(2) <= 64;
-  return fits ? group_by_key(points, std::move(finite), cells_per_m, bounds, context)
-              : group_by_compare(points, std::move(finite), cells_per_m);
+  return fits ? group_by_key(points, finite, cells_per_m, bounds, context)
+              : group_by_compare(points, finite, cells_per_m, context);
 }
 
 std::span<const VoxelCell> find_row(const VoxelCells& cells,

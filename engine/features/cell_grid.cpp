@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/base/error.hpp"
+#include "engine/base/round_down.hpp"
 #include "engine/cloud/sort_by_key.hpp"
 
 namespace landmarkdb {
@@ -17,12 +18,6 @@ constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
 // Points are float, cells are double: a point on the rim of the search sphere may round into the
 // next cell. Widening the searched box by this share of the radius takes in all of them.
 constexpr double kRimMargin = 1e-5;
-
-// Rounded down without a call, which SSE2 has no instruction for.
-std::int64_t rounded_down(double value) {
-  const auto cut = static_cast<std::int64_t>(value);
-  return cut - (static_cast<double>(cut) > value ? 1 : 0);
-}
 
 }  // namespace
 
@@ -120,7 +115,8 @@ std::array<std::int64_t, 3> CellGrid::cell_of(const Eigen::Vector3d& p) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<Eigen::Index>(axis);
     const double c = (p[i] - min_[i]) / cell_m_;
-    cell[axis] = rounded_down(std::clamp(c, -1.0, static_cast<double>(last_[axis]) + 1.0));
+    cell[axis] =
+        round_down<std::int64_t>(std::clamp(c, -1.0, static_cast<double>(last_[axis]) + 1.0));
   }
   return cell;
 }
@@ -168,7 +164,7 @@ void CellGrid::runs(const Eigen::Vector3f& query, float radius_m, std::vector<Ru
       const double left = squared - dx * dx - dy * dy;
       if (left < 0.0) continue;
       const double half = std::sqrt(left);
-      const auto cz = [&](double z) { return rounded_down((z - min_.z()) / cell_m_); };
+      const auto cz = [&](double z) { return round_down<std::int64_t>((z - min_.z()) / cell_m_); };
       const Run run = column_run(cx,
                                  cy,
                                  std::max(cz(centre.z() - half), first(2)),

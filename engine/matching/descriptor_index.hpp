@@ -42,9 +42,8 @@ class DescriptorIndex {
 };
 
 // Compares each query with each stored descriptor (N x kShotLength, row-major; copied). The oracle
-// of all others. Ranks l2, correlation and
-// bhattacharyya by a matrix product and evaluates the candidates again, so that the answer is the
-// same on every machine. Throws like search().
+// of all others. Ranks l2, correlation and bhattacharyya by a matrix product and evaluates the
+// candidates again, so that the answer is the same on every machine. Throws like search().
 std::unique_ptr<DescriptorIndex> make_exact_index(std::span<const float> values, Measure measure);
 
 // FLANN's single kd-tree. `epsilon` 0: exact; otherwise each neighbour's distance, in the tree's

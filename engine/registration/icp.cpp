@@ -77,9 +77,11 @@ IcpResult refine_icp(const SurfaceGrid& target,
   double scale_cells = options.start_scale_cells;
   // While the scale shrinks some hundreds of points show the way as well as all.
   constexpr std::size_t kEnoughOnTheWay = 800;
-  const PointGroups on_the_way(
-      source, source_normals, std::max<std::size_t>(1, source.size() / kEnoughOnTheWay));
+  const std::size_t stride = source.size() / kEnoughOnTheWay;
   const PointGroups all(source, source_normals);
+  const PointGroups fewer =
+      stride > 1 ? PointGroups(source, source_normals, stride) : PointGroups();
+  const PointGroups& on_the_way = stride > 1 ? fewer : all;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     Eigen::Isometry3d& T = result.T_target_source;
     const Eigen::Vector3d centre = T * centre_source;

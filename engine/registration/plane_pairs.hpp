@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -26,7 +27,11 @@ class PointGroups {
               std::size_t stride = 1);
 
   std::size_t size() const { return size_; }  // points
-  std::size_t groups() const { return (size_ + kLanes - 1) / kLanes; }
+  std::size_t groups() const { return groups_for(size_); }
+  // Whole groups that hold `points`.
+  static std::size_t groups_for(std::size_t points) { return (points + kLanes - 1) / kLanes; }
+  // Points in the first `groups` groups.
+  std::size_t size_of(std::size_t groups) const { return std::min(groups * kLanes, size_); }
   const float* group(std::size_t i) const { return values_.data() + i * kLanes * kNumbers; }
 
  private:

@@ -60,20 +60,17 @@ float score_pose(const SurfaceGrid& target,
                  const Eigen::Matrix3f& R_target_source,
                  const Eigen::Vector3f& t_target_source,
                  const ScoreOptions& options) {
-  const auto whole = [](std::size_t n) {
-    return (n + PointGroups::kLanes - 1) / PointGroups::kLanes;
-  };
   const PointGroups& all = test.groups();
-  const std::size_t groups = std::min(whole(count), all.groups());
+  const std::size_t groups = std::min(PointGroups::groups_for(count), all.groups());
   if (groups == 0) return -1.0F;
   const float sigma = options.sigma_cells * target.cell_m();
   return pair_kernels().mean_fit(target,
                                  all.group(0),
                                  groups,
-                                 std::min(groups * PointGroups::kLanes, all.size()),
+                                 all.size_of(groups),
                                  {R_target_source, t_target_source},
                                  {.factor = -0.5F / (sigma * sigma),
-                                  .first_groups = whole(options.first_look),
+                                  .first_groups = PointGroups::groups_for(options.first_look),
                                   .hopeless = options.hopeless});
 }
 

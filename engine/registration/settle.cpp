@@ -45,10 +45,9 @@ void settle_pose(const SurfaceGrid& target,
                  Eigen::Matrix3f& R_target_source,
                  Eigen::Vector3f& t_target_source) {
   const PointGroups& all = test.groups();
-  const std::size_t groups =
-      std::min((options.points + PointGroups::kLanes - 1) / PointGroups::kLanes, all.groups());
+  const std::size_t groups = std::min(PointGroups::groups_for(options.points), all.groups());
   if (groups == 0) return;
-  const std::size_t n = std::min(groups * PointGroups::kLanes, all.size());
+  const std::size_t n = all.size_of(groups);
   constexpr std::size_t kFewestPairs = 8;
   // As if this share of the points held every freedom where it is: what the surface does not fix
   // does not drift.

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "engine/base/round_down.hpp"
 #include "engine/base/run_context.hpp"
 
 namespace landmarkdb {
@@ -112,11 +113,10 @@ class SurfaceGrid {
   static constexpr std::uint32_t kNoBlock = 0;  // the first block is empty
 
   // Clamped before the cast: a float beyond int is undefined behaviour, and nothing is stored out
-  // there. Rounded down without a call, which SSE2 has no instruction for.
+  // there.
   static int cell_on_axis(float scaled) {
     const float clamped = std::min(kFarthestCell, std::max(-kFarthestCell, scaled));  // NaN: far
-    const int cut = static_cast<int>(clamped);
-    return cut - (static_cast<float>(cut) > clamped ? 1 : 0);
+    return round_down<int>(clamped);
   }
   Cell cell_of(const Eigen::Vector3f& p) const {
     return {cell_on_axis(p.x() * inverse_cell_),
