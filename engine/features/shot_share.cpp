@@ -1,7 +1,6 @@
 #include "engine/features/shot_share.hpp"
 
-#include <cstring>
-#include <initializer_list>
+#include "engine/base/instruction_sets.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -15,50 +14,17 @@ constexpr std::size_t kLanes = kShotLanes;
 typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
 typedef std::int32_t Ints __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
-namespace sse2 {
-#include "engine/features/shot_share_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
-}  // namespace sse2
+#define LANDMARKDB_KERNEL_BODY "engine/features/shot_share_body.hpp"
+#include "engine/base/instruction_sets_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
 
-#if defined(__x86_64__)
-#pragma GCC push_options
-#pragma GCC target("avx2")
-namespace avx2 {
-#include "engine/features/shot_share_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
-}  // namespace avx2
-#pragma GCC pop_options
-
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,prefer-vector-width=512")
-namespace avx512 {
-#include "engine/features/shot_share_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
-}  // namespace avx512
-#pragma GCC pop_options
-
-bool has_avx512() {
-  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
-         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
-}
-#endif
+constexpr KernelSets<ShotShare> kSets LANDMARKDB_KERNEL_SETS(share);
 
 }  // namespace
 
-ShotShare shot_share(const char* instruction_set) {
-#if defined(__x86_64__)
-  if (std::strcmp(instruction_set, "avx512") == 0) return has_avx512() ? &avx512::share : nullptr;
-  if (std::strcmp(instruction_set, "avx2") == 0) {
-    return __builtin_cpu_supports("avx2") != 0 ? &avx2::share : nullptr;
-  }
-#endif
-  return std::strcmp(instruction_set, "sse2") == 0 ? &sse2::share : nullptr;
-}
+ShotShare shot_share(const char* instruction_set) { return kSets.named(instruction_set); }
 
 ShotShare shot_share() {
-  static const ShotShare best = [] {
-    for (const char* name : {"avx512", "avx2"}) {
-      if (const ShotShare share = shot_share(name)) return share;
-    }
-    return shot_share("sse2");
-  }();
+  static const ShotShare best = kSets.best();
   return best;
 }
 

@@ -25,13 +25,8 @@ LANDMARKDB_INLINE Floats exponential(Floats x) {
   const Floats lowest = Floats{} - 87.0F;
   const Floats y = (x > lowest ? x : lowest) * 1.44269504F;
   const Ints whole = __builtin_convertvector(y - 0.5F, Ints);
-  const Floats f = (y - __builtin_convertvector(whole, Floats)) * 0.693147181F;
-  Floats p = f * (1.0F / 720.0F) + (1.0F / 120.0F);
-  p = p * f + (1.0F / 24.0F);
-  p = p * f + (1.0F / 6.0F);
-  p = p * f + 0.5F;
-  p = p * f + 1.0F;
-  p = p * f + 1.0F;
+  const Floats p =
+      exp_by_series<Floats>((y - __builtin_convertvector(whole, Floats)) * 0.693147181F);
   const Ints bits = (whole + 127) << 23;
   Floats power;
   __builtin_memcpy(&power, &bits, sizeof power);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
-#include <cstring>
+
+#include "engine/base/fast_exp.hpp"
+#include "engine/base/instruction_sets.hpp"
 
 namespace landmarkdb {
 
@@ -16,25 +18,10 @@ constexpr std::size_t kLanes = PointGroups::kLanes;
 typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
 typedef std::int32_t Ints __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
-namespace sse2 {
-#include "engine/registration/plane_pairs_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
-}  // namespace sse2
+#define LANDMARKDB_KERNEL_BODY "engine/registration/plane_pairs_body.hpp"
+#include "engine/base/instruction_sets_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
 
-#if defined(__x86_64__)
-#pragma GCC push_options
-#pragma GCC target("avx2")
-namespace avx2 {
-#include "engine/registration/plane_pairs_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
-}  // namespace avx2
-#pragma GCC pop_options
-
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,prefer-vector-width=512")
-namespace avx512 {
-#include "engine/registration/plane_pairs_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
-}  // namespace avx512
-#pragma GCC pop_options
-#endif
+constexpr KernelSets<const PairKernels*> kSets LANDMARKDB_KERNEL_SETS(kKernels);
 
 }  // namespace
 
@@ -69,26 +56,11 @@ PlaneSums pair_and_sum(const SurfaceGrid& target,
 }
 
 const PairKernels* pair_kernels(const char* instruction_set) {
-#if defined(__x86_64__)
-  if (std::strcmp(instruction_set, "avx512") == 0) {
-    const bool has =
-        __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0;
-    return has ? &avx512::kKernels : nullptr;
-  }
-  if (std::strcmp(instruction_set, "avx2") == 0) {
-    return __builtin_cpu_supports("avx2") != 0 ? &avx2::kKernels : nullptr;
-  }
-#endif
-  return std::strcmp(instruction_set, "sse2") == 0 ? &sse2::kKernels : nullptr;
+  return kSets.named(instruction_set);
 }
 
 const PairKernels& pair_kernels() {
-  static const PairKernels* const best = [] {
-    for (const char* name : {"avx512", "avx2"}) {
-      if (const PairKernels* kernels = pair_kernels(name)) return kernels;
-    }
-    return pair_kernels("sse2");
-  }();
+  static const PairKernels* const best = kSets.best();
   return *best;
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
-#include <cstring>
+
+#include "engine/base/fast_exp.hpp"
+#include "engine/base/instruction_sets.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -13,32 +15,10 @@ constexpr std::size_t kNumbers = PlaneSummer::kNumbers;
 typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
 typedef std::int32_t Ints __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
-namespace sse2 {
-#include "engine/registration/plane_sums_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
-}  // namespace sse2
+#define LANDMARKDB_KERNEL_BODY "engine/registration/plane_sums_body.hpp"
+#include "engine/base/instruction_sets_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
 
-#if defined(__x86_64__)
-#pragma GCC push_options
-#pragma GCC target("avx2")
-namespace avx2 {
-#include "engine/registration/plane_sums_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
-}  // namespace avx2
-#pragma GCC pop_options
-
-#pragma GCC push_options
-#pragma GCC target("avx512f,prefer-vector-width=512")
-namespace avx512 {
-#include "engine/registration/plane_sums_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
-}  // namespace avx512
-#pragma GCC pop_options
-#endif
-
-PlaneKernel best_kernel() {
-  for (const char* name : {"avx512", "avx2"}) {
-    if (const PlaneKernel kernel = plane_kernel(name)) return kernel;
-  }
-  return plane_kernel("sse2");
-}
+constexpr KernelSets<PlaneKernel> kSets LANDMARKDB_KERNEL_SETS(add_planes);
 
 float factor_of(PairWeight weight, double scale_m) {
   const double inverse = 1.0 / (scale_m * scale_m);
@@ -47,23 +27,13 @@ float factor_of(PairWeight weight, double scale_m) {
 
 }  // namespace
 
-PlaneKernel plane_kernel(const char* instruction_set) {
-#if defined(__x86_64__)
-  if (std::strcmp(instruction_set, "avx512") == 0) {
-    return __builtin_cpu_supports("avx512f") != 0 ? &avx512::add_planes : nullptr;
-  }
-  if (std::strcmp(instruction_set, "avx2") == 0) {
-    return __builtin_cpu_supports("avx2") != 0 ? &avx2::add_planes : nullptr;
-  }
-#endif
-  return std::strcmp(instruction_set, "sse2") == 0 ? &sse2::add_planes : nullptr;
-}
+PlaneKernel plane_kernel(const char* instruction_set) { return kSets.named(instruction_set); }
 
 PlaneSummer::PlaneSummer(PairWeight weight, double scale_m)
     : weight_(weight), factor_(factor_of(weight, scale_m)) {}
 
 void PlaneSummer::add(const float* values, std::size_t groups) {
-  static const PlaneKernel kernel = best_kernel();
+  static const PlaneKernel kernel = kSets.best();
   assert(groups <= kMostGroups && "sums in single precision stay short");
   std::array<float, kPlaneTerms> terms{};
   kernel(values, groups, weight_, factor_, terms.data());
