@@ -16,12 +16,17 @@ namespace {
 constexpr std::size_t kFewestNeighbours = 5;  // the point itself is one of them
 constexpr std::size_t kStep = 1024;           // points between two looks at the stop token
 
-// The normal of the least-squares plane; zero where the points are on one line or in one place.
-Eigen::Vector3f plane_normal(const std::vector<Eigen::Vector3f>& points,
-                             const Eigen::Vector3f& centre,
-                             std::span<const Neighbour> neighbours) {
-  // Second eigenvalue against the first: below, float rounding alone could make the plane.
-  constexpr double kCollinear = 1e-6;
+struct PlaneFit {
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  double width = 0.0;      // second eigenvalue against the first: 1 for a disc, 0 for a line
+  double thickness = 1.0;  // third against the second: 0 for a plane
+};
+
+// The least-squares plane; no normal where the points are on one line or in one place.
+PlaneFit fit_plane(const std::vector<Eigen::Vector3f>& points,
+                   const Eigen::Vector3f& centre,
+                   std::span<const Neighbour> neighbours) {
+  constexpr double kCollinear = 1e-6;  // below, float rounding alone could make the plane
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   for (const Neighbour& neighbour : neighbours) {
@@ -35,9 +40,37 @@ Eigen::Vector3f plane_normal(const std::vector<Eigen::Vector3f>& points,
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance);
   const Eigen::Vector3d& values = solver.eigenvalues();  // ascending
-  if (!(values[2] > 0.0) || !(values[1] > kCollinear * values[2])) return Eigen::Vector3f::Zero();
+  if (!(values[2] > 0.0) || !(values[1] > kCollinear * values[2])) return {};
   const Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>();
-  return normal.allFinite() ? normal : Eigen::Vector3f::Zero();
+  if (!normal.allFinite()) return {};
+  return {normal, values[1] / values[2], values[0] / values[1]};
+}
+
+// Far from a scanner its lines lie further apart than the radius reaches: the few neighbours are of
+// one line, and what noise they have would turn the plane about it. The radius is doubled there
+// until another line of the same plane is met. What stays a line, a rail or a wire, keeps the plane
+// of the first radius.
+PlaneFit fit_wide_enough(const std::vector<Eigen::Vector3f>& points,
+                         const Eigen::Vector3f& centre,
+                         float radius,
+                         const SpatialIndex& index,
+                         std::vector<Neighbour>& neighbours) {
+  constexpr double kLine = 0.1;  // half a disc, as at an edge, has 0.28
+  constexpr double kFlat = 0.05;
+  constexpr std::size_t kMostOfLine = 7;
+  constexpr float kMostRadii = 4.0F;
+  index.within_unordered(centre, radius, neighbours);
+  const std::size_t around = neighbours.size();
+  if (around < kFewestNeighbours) index.nearest(centre, kFewestNeighbours, neighbours);
+  const PlaneFit first = fit_plane(points, centre, neighbours);
+  if (around > kMostOfLine || (around >= kFewestNeighbours && first.width >= kLine)) return first;
+  for (float reach = 2.0F; reach <= kMostRadii; reach *= 2.0F) {
+    index.within_unordered(centre, reach * radius, neighbours);
+    if (neighbours.size() < kFewestNeighbours) continue;
+    const PlaneFit fit = fit_plane(points, centre, neighbours);
+    if (fit.width >= kLine && fit.thickness <= kFlat) return fit;
+  }
+  return first;
 }
 
 void fit_planes(PointCloud& cloud,
@@ -50,11 +83,8 @@ void fit_planes(PointCloud& cloud,
     std::vector<Neighbour> neighbours;
     for (std::size_t i = begin; i < end; ++i) {
       if ((i - begin) % kStep == 0 && context.should_stop()) return;
-      index.within_unordered(cloud.points[i], radius, neighbours);
-      if (neighbours.size() < kFewestNeighbours) {
-        index.nearest(cloud.points[i], kFewestNeighbours, neighbours);
-      }
-      cloud.normals[i] = plane_normal(cloud.points, cloud.points[i], neighbours);
+      cloud.normals[i] =
+          fit_wide_enough(cloud.points, cloud.points[i], radius, index, neighbours).normal;
     }
   });
   context.check("normals");

@@ -10,6 +10,7 @@
 #include "engine/base/error.hpp"
 #include "engine/cloud/normals.hpp"
 #include "engine/cloud/spatial_index.hpp"
+#include "engine/cloud/strays.hpp"
 #include "engine/cloud/voxel_grid.hpp"
 
 namespace landmarkdb {
@@ -92,6 +93,7 @@ PreparedCloud prepare_cloud(const PointCloud& cloud,
                             const RunContext& context) {
   context.check("preprocess");
   PointCloud thinned = thin(cloud, options.voxel_m, context);
+  if (options.without_strays) drop_strays(thinned, options.normal_radius_m, context);
   check_spread(thinned.points);
   context.check("preprocess");
   const SpatialIndex index(thinned.points, context);

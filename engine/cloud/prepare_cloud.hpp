@@ -8,6 +8,7 @@ namespace landmarkdb {
 struct PrepareOptions {
   double voxel_m = 0.0;          // > 0
   double normal_radius_m = 0.0;  // > 0
+  bool without_strays = false;   // drop what hangs alone in the air (drop_strays)
 };
 
 // Thins a sanitised cloud to one point a voxel and gives each a unit normal: the cloud's own where

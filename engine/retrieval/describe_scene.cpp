@@ -78,6 +78,12 @@ FeatureOptions feature_options_of(const CloudScale& scale, const IndexOptions& o
       scale, options.kind, options.keypoints, options.voxel_m, options.radius_m);
 }
 
+PrepareOptions prepare_options(const FeatureOptions& features) {
+  return {.voxel_m = features.voxel_m,
+          .normal_radius_m = features.normal_radius_m,
+          .without_strays = true};
+}
+
 // The front of a head from one frame has 44 at the usual spacing, a toy 500.
 constexpr std::size_t kFewOfObject = 150;
 
@@ -118,10 +124,8 @@ SceneRecord describe_scene(std::string name,
       merged.cloud.points, record.options.voxel_m, context);  // refuses what no server could hold
 
   context.report("prepare", 0, 1);
-  record.prepared = prepare_cloud(merged.cloud,
-                                  merged.counts,
-                                  {record.options.voxel_m, record.options.normal_radius_m},
-                                  context);
+  record.prepared =
+      prepare_cloud(merged.cloud, merged.counts, prepare_options(record.options), context);
   merged = {};
   if (!record.prepared.normals_from_viewpoint) record.warnings.emplace_back("normals_unoriented");
 
@@ -150,10 +154,7 @@ IndexEstimate estimate_index(std::vector<Scan> scans,
   estimate.options = feature_options_of(measure_scale(merged.cloud, context), options);
   const GridSize grid = grid_size(merged.cloud.points, estimate.options.voxel_m, context);
   const PreparedCloud prepared =
-      prepare_cloud(merged.cloud,
-                    merged.counts,
-                    {estimate.options.voxel_m, estimate.options.normal_radius_m},
-                    context);
+      prepare_cloud(merged.cloud, merged.counts, prepare_options(estimate.options), context);
   estimate.points_used = prepared.size();
   const Keypoints keypoints = keypoints_of(prepared, estimate.options, options.kind, context);
   estimate.keypoints = keypoints.size();

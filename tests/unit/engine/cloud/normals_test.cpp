@@ -51,6 +51,22 @@ TEST(EstimateNormals, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+// A floor as a laser sees it from afar: lines of points 5 cm apart, the lines 30 cm from each
+// other, a few millimetres of noise.
+TEST(EstimateNormals, LooksAcrossTheLinesOfAFarScanner) {
+  PointCloud cloud;
+  for (int line = 0; line < 8; ++line) {
+    for (int k = 0; k < 60; ++k) {
+      const float noise = 0.004F * std::sin(static_cast<float>(17 * line + 5 * k * k));
+      cloud.points.emplace_back(
+          0.05F * static_cast<float>(k), 0.3F * static_cast<float>(line), noise);
+    }
+  }
+  cloud.viewpoints = {{0, 0, 2}};
+  estimate_normals(cloud, 0.125, SpatialIndex(cloud.points), {});
+  for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_GT(cloud.normals[i].z(), 0.95F) << i;
+}
+
 TEST(EstimateNormals, GivesCollinearPointsTheDirectionToTheViewpoint) {
   PointCloud cloud;
   for (int i = 0; i < 10; ++i) cloud.points.emplace_back(static_cast<float>(i), 0, 0);

@@ -36,6 +36,16 @@ TEST(PrepareCloud, ThinsAndTurnsNormalsToTheViewpoint) {
   }
 }
 
+TEST(PrepareCloud, DropsStraysWhereItIsAskedTo) {
+  PointCloud cloud = testing::make_room({5, 4, 3}, 0.05F);
+  const PreparedCloud without = prepare_cloud(cloud, {}, kOptions, {});
+  cloud.points.emplace_back(2.5F, 2, 1.5F);
+  PrepareOptions options = kOptions;
+  EXPECT_EQ(prepare_cloud(cloud, {}, options, {}).size(), without.size() + 1);
+  options.without_strays = true;
+  EXPECT_EQ(prepare_cloud(cloud, {}, options, {}).points, without.points);
+}
+
 TEST(PrepareCloud, SaysWhenNothingKnewTheOrientation) {
   const PointCloud cloud = testing::make_room({5, 4, 3}, 0.1F);
   EXPECT_FALSE(prepare_cloud(cloud, {}, kOptions, {}).normals_from_viewpoint);

@@ -1,0 +1,70 @@
+#include "engine/cloud/strays.hpp"
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/cloud/voxel_cells.hpp"
+
+namespace landmarkdb {
+namespace {
+
+constexpr double kMostStrays = 0.02;  // of the points; scans of rooms have 0.2 to 0.5 %
+
+// Whether a point of the cell, or of one around it, other than `i` is near.
+bool has_company(const std::vector<Eigen::Vector3f>& points,
+                 const VoxelCells& cells,
+                 const VoxelCell& own,
+                 std::uint32_t i,
+                 float radius) {
+  const auto near_in = [&](const VoxelCell& cell) {
+    for (std::uint32_t k = cell.begin; k < cell.end; ++k) {
+      const std::uint32_t other = cells.order[k];
+      if (other != i && (points[other] - points[i]).squaredNorm() <= radius * radius) return true;
+    }
+    return false;
+  };
+  if (near_in(own)) return true;
+  for (int row = 0; row < 9; ++row) {
+    const std::int64_t y = own.y + row % 3 - 1;
+    const std::int64_t z = own.z + row / 3 - 1;
+    for (const VoxelCell& cell : find_row(cells, own.x - 1, own.x + 1, y, z)) {
+      if (near_in(cell)) return true;
+    }
+  }
+  return false;
+}
+
+template <typename T>
+void keep_only(const std::vector<char>& kept, std::vector<T>& values) {
+  if (values.size() != kept.size()) return;  // the cloud has none of these
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (kept[i] != 0) values[next++] = values[i];
+  }
+  values.resize(next);
+}
+
+}  // namespace
+
+std::size_t drop_strays(PointCloud& cloud, double radius_m, const RunContext& context) {
+  const VoxelCells cells = group_by_voxel(cloud.points, radius_m, context);
+  const auto radius = static_cast<float>(radius_m);
+  std::vector<char> kept(cloud.size(), 1);
+  std::size_t strays = 0;
+  for (const VoxelCell& cell : cells.cells) {
+    for (std::uint32_t k = cell.begin; k < cell.end; ++k) {
+      const std::uint32_t i = cells.order[k];
+      if (has_company(cloud.points, cells, cell, i, radius)) continue;
+      kept[i] = 0;
+      ++strays;
+    }
+  }
+  if (static_cast<double>(strays) > kMostStrays * static_cast<double>(cloud.size())) return 0;
+  keep_only(kept, cloud.points);
+  keep_only(kept, cloud.normals);
+  keep_only(kept, cloud.colours);
+  keep_only(kept, cloud.viewpoint_index);
+  return strays;
+}
+
+}  // namespace landmarkdb
