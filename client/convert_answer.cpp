@@ -59,6 +59,7 @@ Hypothesis hypothesis(const v1::Hypothesis& h) {
              .agreeing = h.fit().agreeing(),
              .contrast = h.fit().contrast(),
              .contradicted = h.fit().contradicted(),
+             .refuted = h.fit().refuted(),
              .observability = h.fit().observability()};
   out.covariance = matrix<6>(h.covariance(), "covariance");
   return out;

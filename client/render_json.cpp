@@ -66,6 +66,7 @@ Json hypothesis_json(const Hypothesis& h) {
                 {"quality", h.fit.quality},
                 {"contrast", h.fit.contrast},
                 {"contradicted", h.fit.contradicted},
+                {"refuted", h.fit.refuted},
                 {"agreeing", h.fit.agreeing}};
   out["covariance"] = covariance_json(h.covariance);
   out["scene_version"] = h.scene_version;

@@ -154,6 +154,7 @@ v1::Hypothesis hypothesis_message(const Hypothesis& hypothesis) {
   fit.set_observability(hypothesis.fit.observability);
   fit.set_contrast(hypothesis.fit.contrast);
   fit.set_contradicted(hypothesis.fit.contradicted);
+  fit.set_refuted(hypothesis.fit.refuted);
   fit.set_agreeing(hypothesis.fit.agreeing);
   fit.set_explained(hypothesis.fit.explained);
   fit.set_coverage(hypothesis.fit.coverage);

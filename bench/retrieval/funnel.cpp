@@ -67,8 +67,12 @@ Funnel follow(const PointCloud& cloud,
     }
     const auto settled = settle_best(
         entry.wide, entry.grid, matches.view->test, proposals, query.centre, {}, context);
-    const auto ranked =
-        rank_poses(entry.grid, matches.view->test, settled, query.centre, {}, context);
+    const auto ranked = rank_poses(entry.grid,
+                                   matches.view->test,
+                                   settled,
+                                   query.centre,
+                                   {.scanned = &entry.scanned},
+                                   context);
     for (std::size_t i = 0; i < ranked.size() && funnel.ranked < 0; ++i) {
       if (within(ranked[i].T_target_source, truth, kNearMetres, kNearRad))
         funnel.ranked = static_cast<int>(i);

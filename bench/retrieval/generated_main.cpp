@@ -39,6 +39,7 @@ struct Settings {
   double size = 1.0;             // of a place; 1: as the type has it
   int only = -1;                 // ask the frames of this place alone
   bool twins = false;            // every second place is of the same plan as the one before
+  int day = 0;                   // of the frames; the places are scanned on day 0
   bool gravity = false;
   bool both = false;             // without gravity, then with it
   bool funnel = false;           // say at which stage each frame was lost
@@ -58,13 +59,14 @@ struct TakenFrame {
   double normal_spread = 0.0;
 };
 
-datasets::Place place_of(const Settings& settings, int i) {
+datasets::Place place_of(const Settings& settings, int i, int day) {
   const auto types = datasets::all_place_types();
   const int plan = settings.twins ? i / 2 : i;
   datasets::PlaceOptions options;
   options.type = types[(static_cast<std::size_t>(plan) + settings.seed / 100) % types.size()];
   options.seed = settings.seed + static_cast<std::uint64_t>(plan);
   options.twin = settings.twins ? static_cast<std::uint64_t>(i % 2) : 0;
+  options.day = static_cast<std::uint64_t>(day);
   options.floors = 1;
   options.size = settings.size;
   return datasets::make_place(options);
@@ -134,7 +136,7 @@ void print_row(const AskedFrame& asked, const QueryResult& answer, const Eigen::
               fit.free_space_violation,
               fit.margin,
               fit.observability);
-  std::printf("%u,%lu,%.4f,%.0f,%.4f,%.4f,%.3f,%.3f,%d,%d,%.0f\n",
+  std::printf("%u,%lu,%.4f,%.0f,%.4f,%.4f,%.3f,%.3f,%d,%d,%.0f,%.4f\n",
               any ? answer.hypotheses[0].counts.inliers : 0U,
               static_cast<unsigned long>(answer.query.keypoints),
               fit.rmse_m,
@@ -148,7 +150,8 @@ void print_row(const AskedFrame& asked, const QueryResult& answer, const Eigen::
               asked.scanned,
               asked.gravity ? 1 : 0,
               asked.catalog,
-              asked.milliseconds);
+              asked.milliseconds,
+              fit.refuted);
   std::fflush(stdout);
 }
 
@@ -198,9 +201,9 @@ struct Generated {
 Generated generate(const Settings& settings, const RunContext& context) {
   Generated made;
   for (int i = 0; i < settings.places + settings.strangers; ++i) {
-    made.places.push_back(place_of(settings, i));
+    made.places.push_back(place_of(settings, i, settings.day));
     if (i >= settings.places) continue;
-    made.catalog->entries.push_back(index_place(made.places.back(), settings, i, context));
+    made.catalog->entries.push_back(index_place(place_of(settings, i, 0), settings, i, context));
     made.entries.push_back(make_entry(made.catalog->entries.back()));
   }
   return made;
@@ -291,7 +294,7 @@ int run(Settings settings) {
   std::puts(
       "place,frame,spread,status,right,metres,degrees,confidence,quality,overlap,explained,"
       "coverage,crossed,margin,observability,inliers,keypoints,rmse_m,agreeing,contrast,"
-      "contradicted,nees,scanned,gravity,catalog,ms");
+      "contradicted,nees,scanned,gravity,catalog,ms,refuted");
   std::vector<AskedFrame> asked;
   constexpr std::uint64_t kSeedStep = 100;
   for (int number = 0; number < settings.catalogs; ++number, settings.seed += kSeedStep) {
@@ -327,6 +330,7 @@ int main(int argc, char** argv) {
   app.add_option("--points", settings.points, "Scanned points a place");
   app.add_option("--size", settings.size, "Size of the places, 1: as their type has it");
   app.add_flag("--twins", settings.twins, "Every second place has the plan of the one before");
+  app.add_option("--day", settings.day, "Day of the frames: from 1 on clutter stands elsewhere");
   app.add_option("--only", settings.only, "Ask the frames of this place alone");
   app.add_flag("--gravity", settings.gravity, "Tell the query which way is up");
   app.add_flag("--both", settings.both, "Ask every frame without gravity and with it");

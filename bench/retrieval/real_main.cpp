@@ -87,7 +87,8 @@ void ask(const RealCase& one, const Localizer& localizer, const RunContext& cont
     const bool right = metres >= 0.0 && metres < kRightMetres + one.accuracy_m &&
                        degrees < (kRightRad + one.accuracy_rad) * 57.29578;
     std::printf(
-        " | %-5s %-12s %6.3f m %6.2f deg c %.2f ov %.2f ex %.2f cv %.2f cr %.3f mg %.2f ob %.4f in "
+        " | %-5s %-12s %6.3f m %6.2f deg c %.2f ov %.2f ex %.2f cv %.2f cr %.3f ct %.3f rf %.3f mg "
+        "%.2f ob %.4f in "
         "%u",
         right ? "RIGHT" : "wrong",
         h.scene.c_str(),
@@ -98,6 +99,8 @@ void ask(const RealCase& one, const Localizer& localizer, const RunContext& cont
         h.fit.explained,
         h.fit.coverage,
         h.fit.free_space_violation,
+        h.fit.contradicted,
+        h.fit.refuted,
         h.fit.margin,
         h.fit.observability,
         h.counts.inliers);

@@ -4,7 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
+
+#include "engine/registration/equal_angles.hpp"
+#include "engine/registration/sight_rays.hpp"
 
 namespace landmarkdb {
 
@@ -81,24 +85,10 @@ void RangeImage::number_inner() {
   }
 }
 
-void RangeImage::divide_faces() {
-  side_ = std::max(4, static_cast<int>(std::ceil(0.5 * std::numbers::pi / step_rad_)));
-  cell_begin_.clear();
-  for (int cell = 0; cell <= side_; ++cell) {
-    const double angle = (2.0 * cell / side_ - 1.0) * 0.25 * std::numbers::pi;
-    cell_begin_.push_back(static_cast<float>(std::tan(angle)));
-  }
-  const int steps = 2 * side_;  // a cell's tangents span at least pi / (2 side), a step 1 / side
-  cell_of_step_.clear();
-  for (int step = 0, cell = 0; step < steps; ++step) {
-    const float begin = 2.0F * static_cast<float>(step) / static_cast<float>(steps) - 1.0F;
-    while (cell + 1 < side_ && cell_begin_[static_cast<std::size_t>(cell) + 1] <= begin) ++cell;
-    cell_of_step_.push_back(cell);
-  }
-}
-
 void RangeImage::measure(std::span<const Eigen::Vector3f> points) {
-  divide_faces();
+  constexpr int kMostCells = 4095;  // SightRay has twelve bits for a row
+  const double cells = std::ceil(0.5 * std::numbers::pi / step_rad_);
+  side_ = std::clamp(static_cast<int>(cells), 4, kMostCells);
   cells_.assign(6 * static_cast<std::size_t>(side_ * side_), Cell{kInfinity, 0.0F});
   for (const Eigen::Vector3f& point : points) {
     const Eigen::Vector3f ray = point - viewpoint_;
@@ -124,11 +114,8 @@ RangeImage::Completeness RangeImage::completeness() const {
 }
 
 int RangeImage::cell_along(float tangent) const {
-  const auto steps = static_cast<float>(cell_of_step_.size());
-  const float step = std::clamp((tangent + 1.0F) * 0.5F * steps, 0.0F, steps - 1.0F);
-  const int cell = cell_of_step_[static_cast<std::size_t>(step)];
-  const bool next = cell + 1 < side_ && tangent >= cell_begin_[static_cast<std::size_t>(cell) + 1];
-  return next ? cell + 1 : cell;
+  const float along = along_face(tangent) * static_cast<float>(side_);
+  return std::clamp(static_cast<int>(along), 0, side_ - 1);
 }
 
 RangeImage::Place RangeImage::place_of(const Eigen::Vector3f& ray) const {
@@ -194,23 +181,38 @@ bool RangeImage::in_view(const Eigen::Vector3f& centre, float radius_m) const {
 RangeImage::Rendered RangeImage::render(const SightSurface& surface,
                                         const Eigen::Isometry3d& T_here_surface,
                                         float patch_m) const {
-  const Eigen::Matrix3f R = T_here_surface.linear().cast<float>();
-  const Eigen::Vector3f t = T_here_surface.translation().cast<float>() - viewpoint_;
-  const float reach = 2.0F * max_range_m_;  // what lies further could only be hidden
+  const SightView view{T_here_surface.linear().cast<float>(),
+                       T_here_surface.translation().cast<float>() - viewpoint_,
+                       cone_axis_,
+                       cone_cosine_,
+                       2.0F * max_range_m_,  // what lies further could only be hidden
+                       side_};
   const float half_patch_cells = 0.5F * patch_m / static_cast<float>(step_rad_);
+  // From here on a cell is three patches wide.
+  const float far_m = 3.0F * patch_m / static_cast<float>(step_rad_);
   Rendered rendered;
   rendered.predicted.assign(inner_.size(), {kInfinity, false});
+  std::array<SightRay, SightSurface::kBlockPoints> rays;
   for (const SightSurface::Block& block : surface.blocks()) {
-    if (!in_view(R * block.centre + t, block.radius_m)) continue;
-    for (std::uint32_t i = block.begin; i < block.end; ++i) {
-      const Eigen::Vector3f ray = R * surface.points()[i] + t;
-      const float range = ray.norm();
-      if (!(range > 0.0F) || range > reach || cone_axis_.dot(ray) < cone_cosine_ * range) continue;
-      const bool back = surface.has_normals() && ray.dot(R * surface.normals()[i]) > 0.0F;
-      const Place place = place_of(ray);
+    const Eigen::Vector3f centre = view.R_view_surface * block.centre + view.t_view_surface;
+    if (!in_view(centre, block.radius_m)) continue;
+    const bool is_far = centre.norm() - block.radius_m > far_m;
+    const std::size_t count = (is_far ? block.spread_end : block.end) - block.begin;
+    const Eigen::Vector3f* normals =
+        surface.has_normals() ? surface.normals().data() + block.begin : nullptr;
+    sight_kernel()(surface.points()[block.begin].data(),
+                   normals == nullptr ? nullptr : normals->data(),
+                   count,
+                   view,
+                   rays.data());
+    for (const SightRay& ray : std::span(rays).first(count)) {
+      if (!(ray.range_m > 0.0F)) continue;
       const int half = static_cast<int>(
-          std::min(static_cast<float>(kWidestPatch), half_patch_cells / range + 0.5F));
-      lay_patch(place, half, {range, back}, rendered);
+          std::min(static_cast<float>(kWidestPatch), half_patch_cells / ray.range_m + 0.5F));
+      lay_patch({ray.place >> 24, (ray.place >> 12) & 0xfff, ray.place & 0xfff},
+                half,
+                {ray.range_m, ray.back != 0},
+                rendered);
     }
   }
   return rendered;
@@ -306,6 +308,19 @@ bool RangeImage::hides(const Eigen::Vector3f& p, float slack_m) const {
   if (!(range > 0.0F) || cone_axis_.dot(ray) < cone_cosine_ * range) return false;
   const Cell& wide = widened_[index_of(place_of(ray))];
   return wide.furthest > 0.0F && range > wide.furthest + slack_m;
+}
+
+bool RangeImage::looked_through(const Eigen::Vector3f& p, float slack_m) const {
+  const Eigen::Vector3f ray = p - viewpoint_;
+  const float range = ray.norm();
+  if (!(range > 0.0F) || cone_axis_.dot(ray) < cone_cosine_ * range) return false;
+  const Cell& wide = widened_[index_of(place_of(ray))];
+  return wide.furthest > 0.0F && range < wide.nearest - slack_m;
+}
+
+std::size_t RangeImage::memory_bytes() const {
+  return (cells_.size() + widened_.size()) * sizeof(Cell) +
+         (inner_.size() + inner_of_cell_.size()) * sizeof(std::uint32_t);
 }
 
 SightCounts RangeImage::compare(const SightSurface& surface,

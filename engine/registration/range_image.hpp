@@ -77,6 +77,11 @@ class RangeImage {
   // all around it, by more than `slack_m`: the point cannot have been seen.
   bool hides(const Eigen::Vector3f& p, float slack_m) const;
 
+  // True when the sensor measured something further than `p` (its own frame) in that direction and
+  // all around it, by more than `slack_m`: nothing is there.
+  bool looked_through(const Eigen::Vector3f& p, float slack_m) const;
+
+  std::size_t memory_bytes() const;
   float max_range_m() const { return max_range_m_; }
   double step_rad() const { return step_rad_; }
 
@@ -125,7 +130,6 @@ class RangeImage {
   };
   void choose_step(std::span<const Eigen::Vector3f> points);
   void measure(std::span<const Eigen::Vector3f> points);
-  void divide_faces();
   Completeness completeness() const;
   int cell_along(float tangent) const;
   Place place_of(const Eigen::Vector3f& ray) const;
@@ -138,10 +142,6 @@ class RangeImage {
   Eigen::Vector3f viewpoint_;
   double step_rad_ = 0.0;
   int side_ = 0;  // cells along an edge of a face
-  // Where a tangent, -1 to 1 along a face, falls: the cell at the start of each of the even steps,
-  // none of which is as wide as a cell, and the tangent at which each cell begins.
-  std::vector<int> cell_of_step_;
-  std::vector<float> cell_begin_;
   float max_range_m_ = 0.0F;
   // Around all directions measured, and as far beyond them as a patch reaches: what a surface
   // shows outside of it is compared with nothing.

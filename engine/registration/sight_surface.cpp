@@ -4,14 +4,13 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Geometry>
 
 namespace landmarkdb {
 
 namespace {
-
-constexpr std::size_t kBlockPoints = 128;
 
 using Order = std::span<std::uint32_t>;
 
@@ -22,9 +21,9 @@ void split(std::span<const Eigen::Vector3f> points,
            std::vector<SightSurface::Block>& blocks) {
   Eigen::AlignedBox3f box;
   for (const std::uint32_t i : order) box.extend(points[i]);
-  if (order.size() <= kBlockPoints) {
-    SightSurface::Block block{
-        begin, begin + static_cast<std::uint32_t>(order.size()), box.center(), 0.0F};
+  if (order.size() <= SightSurface::kBlockPoints) {
+    const std::uint32_t end = begin + static_cast<std::uint32_t>(order.size());
+    SightSurface::Block block{begin, end, end, box.center(), 0.0F};
     for (const std::uint32_t i : order) {
       block.radius_m = std::max(block.radius_m, (points[i] - block.centre).norm());
     }
@@ -45,15 +44,40 @@ void split(std::span<const Eigen::Vector3f> points,
   split(points, order.subspan(half), begin + static_cast<std::uint32_t>(half), blocks);
 }
 
+// Puts points at least `apart_m` from one another first; returns how many.
+std::uint32_t put_spread_first(std::span<const Eigen::Vector3f> points,
+                               Order order,
+                               float apart_m) {
+  std::size_t spread = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Eigen::Vector3f& p = points[order[i]];
+    const bool near = std::any_of(
+        order.begin(),
+        order.begin() + static_cast<std::ptrdiff_t>(spread),
+        [&](std::uint32_t other) { return (points[other] - p).squaredNorm() < apart_m * apart_m; });
+    if (!near) std::swap(order[spread++], order[i]);
+  }
+  return static_cast<std::uint32_t>(spread);
+}
+
 }  // namespace
 
 SightSurface::SightSurface(std::span<const Eigen::Vector3f> points,
-                           std::span<const Eigen::Vector3f> normals) {
+                           std::span<const Eigen::Vector3f> normals,
+                           double spacing_m) {
   assert((normals.empty() || normals.size() == points.size()) && "one normal a point, or none");
   if (points.empty()) return;
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0U);
   split(points, order, 0, blocks_);
+  if (spacing_m > 0.0) {
+    constexpr double kApart = 1.6;  // spacings: what is left lies about twice as far apart
+    for (Block& block : blocks_) {
+      const Order of_block = Order(order).subspan(block.begin, block.end - block.begin);
+      block.spread_end =
+          block.begin + put_spread_first(points, of_block, static_cast<float>(kApart * spacing_m));
+    }
+  }
   points_.reserve(points.size());
   for (const std::uint32_t i : order) points_.push_back(points[i]);
   normals_.reserve(normals.size());

@@ -43,6 +43,7 @@ void measure_overlap(const SurfaceGrid& target,
                      std::span<const Eigen::Vector3f> source,
                      std::span<const Eigen::Vector3f> source_normals,
                      const Eigen::Isometry3d& T_target_source,
+                     const ScannedSpace* scanned,
                      const VerifyOptions& options,
                      Evidence& evidence) {
   const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
@@ -53,12 +54,14 @@ void measure_overlap(const SurfaceGrid& target,
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   double on_surface = 0.0;
   double squared = 0.0;
+  double refuted = 0.0;
   for (std::size_t i = 0; i < source.size(); ++i) {
     const Eigen::Vector3f n = R * source_normals[i];
-    DirectionTally& tally = tallies[direction_of(n)];
-    tally.all += 1.0;
     const Eigen::Vector3f p = R * source[i] + t;
     const Surfel* surfel = target.near(p);
+    DirectionTally& tally = tallies[direction_of(n)];
+    tally.all += 1.0;
+    if (surfel == nullptr && scanned != nullptr && scanned->is_empty_at(p)) refuted += 1.0;
     if (surfel == nullptr || surfel->normal.dot(n) < agreement) continue;
     const float distance = surfel->normal.dot(p - surfel->point);
     if (std::abs(distance) > tolerance) continue;
@@ -70,6 +73,7 @@ void measure_overlap(const SurfaceGrid& target,
   const auto points = static_cast<double>(source.size());
   if (points <= 0.0) return;
   evidence.overlap = on_surface / points;
+  evidence.refuted = refuted / points;
   evidence.balanced = balanced_share(tallies, points);
   evidence.rmse_m = on_surface > 0.0 ? std::sqrt(squared / on_surface) : 0.0;
   if (on_surface > 0.0) evidence.strength = scatter.diagonal() / on_surface;

@@ -8,6 +8,7 @@
 
 #include "engine/registration/icp.hpp"
 #include "engine/registration/range_image.hpp"
+#include "engine/registration/scanned_space.hpp"
 #include "engine/registration/surface_grid.hpp"
 
 namespace landmarkdb {
@@ -18,6 +19,7 @@ struct Evidence {
   double balanced = 0.0;   // the same, each surface direction weighted alike
   double rmse_m = 0.0;     // of those points, to the surface
   double explained = 0.0;  // of the directions where the entry predicts a range: it agrees
+  double refuted = 0.0;    // of the source points: where the target is known to be empty
   double crossed = 0.0;    // of the same: the sensor looked through the entry's surface
   double coverage = 0.0;   // of the directions measured: the entry predicts a range
   // Of the directions predicted, of an object those of them that nothing hides: in an area of them
@@ -55,11 +57,13 @@ struct VerifyOptions {
   bool hidden_contradicts = true;
 };
 
-// Measures how many of the source's points lie on the target's surface under the pose.
+// Measures how many of the source's points lie on the target's surface under the pose, and how many
+// where it is known to be empty, as `scanned` (null: nobody knows) tells.
 void measure_overlap(const SurfaceGrid& target,
                      std::span<const Eigen::Vector3f> source,
                      std::span<const Eigen::Vector3f> source_normals,
                      const Eigen::Isometry3d& T_target_source,
+                     const ScannedSpace* scanned,
                      const VerifyOptions& options,
                      Evidence& evidence);
 

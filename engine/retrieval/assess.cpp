@@ -42,7 +42,11 @@ double quality(const Evidence& evidence, double possible, double points) {
   const double overlap = std::min(1.0, 0.5 * (evidence.overlap + evidence.balanced) / possible);
   const double in_view =
       0.5 + 0.5 * evidence.coverage;  // what agrees in a corner of the view is half a proof
-  return drawn_in(overlap, points) * evidence.explained * evidence.explained * in_view;
+  // What stands where the scanner looked through counts for more than what is missing: 95 % of
+  // right poses have less than 0.3 % of it, half of the wrong ones more than 3 %.
+  const double not_refuted = std::pow(1.0 - evidence.refuted, 4);
+  return drawn_in(overlap, points) * evidence.explained * evidence.explained * in_view *
+         not_refuted;
 }
 
 // A place can hold what it was scanned for, and a query mostly outside of that is not half proved.
@@ -102,7 +106,13 @@ Assessed assess_coarse(const Meeting& meeting,
   }
   Evidence& evidence = assessed.evidence;
   const VerifyOptions verify = verify_options(meeting);
-  measure_overlap(meeting.target, points, normals, assessed.icp.T_target_source, verify, evidence);
+  measure_overlap(meeting.target,
+                  points,
+                  normals,
+                  assessed.icp.T_target_source,
+                  &entry.scanned,
+                  verify,
+                  evidence);
   measure_sight(query.ranges,
                 entry.wide_sight,
                 assessed.T_entry_sensor.inverse(),
@@ -142,6 +152,7 @@ void assess_fine(const Meeting& meeting,
                   meeting.source,
                   meeting.source_normals,
                   assessed.icp.T_target_source,
+                  &entry.scanned,
                   verify,
                   evidence);
   measure_sight(query.ranges,

@@ -42,16 +42,38 @@ double closeness_of(const SearchInput& input, const PointGroups& points, const A
   return fits.empty() ? 0.0 : sum / static_cast<double>(fits.size());
 }
 
-float contrast_of(const std::vector<float>& mine, const std::vector<float>& other) {
+// Of one pose, for each of the points: how well it lies on the entry's surface, 0..1, and whether
+// it lies where the entry was never scanned, so that nobody knows what is there.
+struct OfPose {
+  std::vector<float> fits;
+  std::vector<char> unknown;
+};
+
+std::vector<char> unknown_of(std::span<const Eigen::Vector3f> points,
+                             const Entry& entry,
+                             const Eigen::Isometry3d& T_entry_sensor) {
+  std::vector<char> unknown(points.size(), 0);
+  if (!entry.scanned.known()) return unknown;
+  const Eigen::Isometry3f T = T_entry_sensor.cast<float>();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f p = T * points[i];
+    unknown[i] = entry.grid.near(p) == nullptr && !entry.scanned.is_empty_at(p) ? 1 : 0;
+  }
+  return unknown;
+}
+
+// What the points that lie in scanned space under both poses say for one of them.
+float contrast_of(const OfPose& mine, const OfPose& other) {
   // As if this share of the points had been undecided: what a handful of points says is no proof.
   constexpr float kUndecided = 0.02F;
   float for_mine = 0.0F;
   float against = 0.0F;
-  for (std::size_t i = 0; i < mine.size(); ++i) {
-    const float difference = mine[i] - other[i];
+  for (std::size_t i = 0; i < mine.fits.size(); ++i) {
+    if (mine.unknown[i] + other.unknown[i] > 0) continue;
+    const float difference = mine.fits[i] - other.fits[i];
     (difference > 0.0F ? for_mine : against) += std::abs(difference);
   }
-  const float undecided = kUndecided * static_cast<float>(mine.size());
+  const float undecided = kUndecided * static_cast<float>(mine.fits.size());
   const float all = for_mine + against + undecided;
   return all > 0.0F ? (for_mine - against) / all : 0.0F;
 }
@@ -67,15 +89,15 @@ void contrast_poses(const SearchInput& input, SearchResult& result) {
   }
   struct OfView {
     PointGroups points;
-    std::vector<std::vector<float>> fits;  // as `places`
+    std::vector<OfPose> poses;  // as `places`
   };
   std::map<const QueryView*, OfView> views;
   for (const std::size_t i : places) {
     const QueryView& view = *result.matches[poses[i].matches].view;
     OfView& of_view = views[&view];
-    if (!of_view.fits.empty()) continue;
+    if (!of_view.poses.empty()) continue;
     of_view.points = PointGroups(view.sample_points, view.sample_normals);
-    of_view.fits.resize(places.size());
+    of_view.poses.resize(places.size());
   }
   for (auto& [view, of_view] : views) {
     parallel_chunks(places.size(), input.context.threads, [&](std::size_t begin, std::size_t end) {
@@ -83,8 +105,9 @@ void contrast_poses(const SearchInput& input, SearchResult& result) {
         input.context.check("verify");
         const Assessed& pose = poses[places[k]];
         const Entry& entry = input.entries[pose.entry];
-        of_view.fits[k] =
-            fits_of(of_view.points, entry, pose.T_entry_sensor, common_tolerance_m(input, entry));
+        of_view.poses[k] = {
+            fits_of(of_view.points, entry, pose.T_entry_sensor, common_tolerance_m(input, entry)),
+            unknown_of(view->sample_points, entry, pose.T_entry_sensor)};
       }
     });
   }
@@ -96,7 +119,7 @@ void contrast_poses(const SearchInput& input, SearchResult& result) {
       pose.closeness = closeness_of(input, of_view.points, pose);
       pose.contrast.assign(poses.size(), 0.0F);
       for (std::size_t b = 0; b < places.size(); ++b) {
-        pose.contrast[places[b]] = contrast_of(of_view.fits[k], of_view.fits[b]);
+        pose.contrast[places[b]] = contrast_of(of_view.poses[k], of_view.poses[b]);
       }
     }
   });

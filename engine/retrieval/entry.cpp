@@ -11,9 +11,8 @@ namespace landmarkdb {
 
 namespace {
 
-constexpr int kReachCells = 2;                 // 10 cm in a room described at 5 cm
-constexpr double kWideCells = 3.0;             // 15 cm there
-constexpr std::size_t kSightPoints = 200'000;  // free space is judged on what of these is in view
+constexpr int kReachCells = 2;      // 10 cm in a room described at 5 cm
+constexpr double kWideCells = 3.0;  // 15 cm there
 constexpr std::size_t kTestPoints = 512;
 constexpr std::size_t kLayouts = 1;  // what is built has one frame of right angles as a rule
 
@@ -27,14 +26,11 @@ SurfaceGrid grid_of_scene(const SceneRecord& record, const RunContext& context) 
   }
 }
 
-SightSurface sight_of(const PreparedCloud& cloud) {
-  std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;
-  for (const std::uint32_t i : spread(cloud.size(), kSightPoints)) {
-    points.push_back(cloud.points[i]);
-    if (cloud.normals_from_viewpoint) normals.push_back(cloud.normals[i]);
-  }
-  return SightSurface(points, normals);
+// Objects are small, and seen close by: all of their points count.
+SightSurface sight_of(const PreparedCloud& cloud, bool is_object) {
+  const std::span<const Eigen::Vector3f> normals =
+      cloud.normals_from_viewpoint ? cloud.normals : std::span<const Eigen::Vector3f>{};
+  return SightSurface(cloud.points, normals, is_object ? 0.0 : cloud.resolution_m);
 }
 
 }  // namespace
@@ -83,6 +79,7 @@ Entry make_outline(CatalogEntry stored) {
           .wide_sight = {},
           .planes = {},
           .test = {},
+          .scanned = {},
           .sight = {},
           .centre = Eigen::Vector3d::Zero(),
           .extent_m = 0.0};
@@ -112,9 +109,13 @@ Entry make_entry(CatalogEntry stored, const RunContext& context) {
                     : lay_out_planes(
                           cloud.points, cloud.normals, plane_bin_m(cloud.resolution_m), kLayouts),
       .test = select_test_points(cloud.points, cloud.normals, {}, kTestPoints, kSeed),
-      .sight = sight_of(cloud),
+      .scanned = {},
+      .sight = sight_of(cloud, is_object),
       .centre = Eigen::Vector3d::Zero(),
       .extent_m = 0.0};
+  if (!is_object) {
+    entry.scanned = ScannedSpace(cloud.points, cloud.viewpoints, cloud.viewpoint_index, entry.grid);
+  }
   std::vector<Eigen::Vector3f> wide_points;
   for (const Surfel& surfel : entry.wide.surfels()) wide_points.push_back(surfel.point);
   entry.wide_sight = SightSurface(wide_points);

@@ -10,6 +10,7 @@
 #include "engine/base/run_context.hpp"
 #include "engine/registration/plane_layout.hpp"
 #include "engine/registration/pose_score.hpp"
+#include "engine/registration/scanned_space.hpp"
 #include "engine/registration/sight_surface.hpp"
 #include "engine/registration/surface_grid.hpp"
 #include "engine/types/scene_record.hpp"
@@ -20,11 +21,12 @@ namespace landmarkdb {
 struct Entry {
   CatalogEntry stored;
   SurfaceGrid grid;
-  SurfaceGrid wide;                 // of places: the same surface in larger cells
-  SightSurface wide_sight;          // of its surfels
-  std::vector<PlaneLayout> planes;  // of places that have a frame of right angles
-  TestPoints test;                  // of the entry's own surface, for objects
-  SightSurface sight;               // spread over the whole surface, for free space
+  SurfaceGrid wide;                                  // of places: the same surface in larger cells
+  SightSurface wide_sight;                           // of its surfels
+  std::vector<PlaneLayout> planes;                   // of places that have a frame of right angles
+  TestPoints test;                                   // of the entry's own surface, for objects
+  ScannedSpace scanned;                              // of places scanned from known viewpoints
+  SightSurface sight;                                // of the whole surface, for free space
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean of the points
   double extent_m = 0.0;                             // twice the root mean square distance from it
 

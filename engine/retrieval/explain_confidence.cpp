@@ -54,6 +54,7 @@ std::vector<ConfidenceTerm> confidence_terms(const Evidence& evidence,
   add_evidence("observability", &Evidence::observability, 0.0, 1.0);
   add_evidence("contrast", &Evidence::contrast, 0.0, 1.0);
   add_evidence("contradicted", &Evidence::contradicted, 1.0, 0.0);
+  add_evidence("refuted", &Evidence::refuted, 1.0, 0.0);
   add_evidence("agreeing", &Evidence::agreeing, 0.0, kManyAgreeing);
   add_evidence("outgrown", &Evidence::outgrown, 1.0, 0.0);
   std::stable_sort(

@@ -248,8 +248,13 @@ void look_at_object(const Meeting& meeting,
   verify.sight_tolerance_range = kSightToleranceRange;
   verify.sight_tolerance_cells = kSightToleranceCells;
   verify.hidden_contradicts = false;
-  measure_overlap(
-      meeting.target, seen.points, seen.normals, assessed.icp.T_target_source, verify, evidence);
+  measure_overlap(meeting.target,
+                  seen.points,
+                  seen.normals,
+                  assessed.icp.T_target_source,
+                  nullptr,
+                  verify,
+                  evidence);
   measure_closeness(meeting.target, seen, assessed.icp.T_target_source, noise, evidence);
   measure_sight(ranges,
                 entry.sight,

@@ -46,6 +46,22 @@ class BestFirst {
   std::size_t next_ = 0;
 };
 
+// What is left of a score for the test points that stand where the target is known to be empty.
+float not_refuted(const SurfaceGrid& target,
+                  const ScannedSpace& scanned,
+                  const TestPoints& test,
+                  const Proposal& proposal) {
+  constexpr std::size_t kLooked = 128;
+  const auto points = test.points().first(std::min(kLooked, test.size()));
+  std::size_t empty = 0;
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3f p = proposal.R_target_source * point + proposal.t_target_source;
+    empty += target.near(p) == nullptr && scanned.is_empty_at(p) ? 1U : 0U;
+  }
+  const float left = 1.0F - static_cast<float>(empty) / static_cast<float>(points.size());
+  return left * left * left;
+}
+
 // Scores proposals[which[i]] with `points` test points each; those of no score are left out.
 BestFirst score_all(const SurfaceGrid& target,
                     const TestPoints& test,
@@ -53,6 +69,7 @@ BestFirst score_all(const SurfaceGrid& target,
                     std::span<const Proposal> proposals,
                     std::span<const std::uint32_t> which,
                     const ScoreOptions& score,
+                    const ScannedSpace* scanned,
                     const RunContext& context) {
   std::vector<Scored> scored(which.size());
   parallel_chunks(which.size(), context.threads, [&](std::size_t begin, std::size_t end) {
@@ -64,6 +81,9 @@ BestFirst score_all(const SurfaceGrid& target,
           score_pose(
               target, test, points, proposal.R_target_source, proposal.t_target_source, score),
           which[i]};
+      if (scanned != nullptr && scanned->known() && scored[i].score > 0.0F) {
+        scored[i].score *= not_refuted(target, *scanned, test, proposal);
+      }
     }
   });
   std::erase_if(scored, [](const Scored& one) { return one.score <= 0.0F; });
@@ -146,6 +166,7 @@ std::vector<Proposal> settle_best(const SurfaceGrid& wide,
                                proposals,
                                all,
                                {.first_look = options.first_look, .hopeless = options.hopeless},
+                               nullptr,
                                context);
   const std::vector<std::uint32_t> better =
       best_of_each_place(scored,
@@ -178,8 +199,14 @@ std::vector<RankedPose> rank_poses(const SurfaceGrid& target,
                                    const RunContext& context) {
   std::vector<std::uint32_t> all(proposals.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-  BestFirst scored = score_all(
-      target, test, options.first_points, proposals, all, {.hopeless = options.hopeless}, context);
+  BestFirst scored = score_all(target,
+                               test,
+                               options.first_points,
+                               proposals,
+                               all,
+                               {.hopeless = options.hopeless},
+                               nullptr,
+                               context);
 
   const std::vector<std::uint32_t> better =
       best_of_each_place(scored,
@@ -195,6 +222,7 @@ std::vector<RankedPose> rank_poses(const SurfaceGrid& target,
                      proposals,
                      better,
                      {.hopeless = options.hopeless},
+                     options.scanned,
                      context);
 
   std::vector<RankedPose> ranked;

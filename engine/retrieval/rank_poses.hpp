@@ -11,6 +11,7 @@
 #include "engine/base/run_context.hpp"
 #include "engine/registration/pose_score.hpp"
 #include "engine/registration/propose.hpp"
+#include "engine/registration/scanned_space.hpp"
 #include "engine/registration/surface_grid.hpp"
 
 namespace landmarkdb {
@@ -26,6 +27,8 @@ struct RankOptions {
   float hopeless = 0.15F;  // mean score of the first few points below which a proposal is given up
   double same_translation_cells = 4.0;  // proposals closer than both are one
   double same_rotation_rad = 0.12;
+  // Of the target; those that did well then lose by what stands where it is known to be empty.
+  const ScannedSpace* scanned = nullptr;
 };
 
 struct SettleBestOptions {

@@ -131,8 +131,12 @@ void propose_and_rank(const SearchInput& input,
                                                     input.query.centre,
                                                     {.kept = settled_each},
                                                     input.context);
-  const std::vector<RankedPose> survivors =
-      rank_poses(entry.grid, matches.view->test, settled, input.query.centre, {}, input.context);
+  const std::vector<RankedPose> survivors = rank_poses(entry.grid,
+                                                       matches.view->test,
+                                                       settled,
+                                                       input.query.centre,
+                                                       {.scanned = &entry.scanned},
+                                                       input.context);
   for (const RankedPose& ranked : survivors) {
     candidates.push_back({m, ranked.T_target_source, ranked.score, ranked.correspondence});
   }

@@ -131,6 +131,13 @@ bool holds_as_object(const Standing& best, const VerdictOptions& options) {
          pose.evidence.contradicted <= options.most_contradicted_of_object;
 }
 
+// What is asked of a place's pose that is not sure.
+bool holds_as_place(const Evidence& evidence, const VerdictOptions& options) {
+  return evidence.contradicted <= options.most_contradicted &&
+         evidence.refuted <= options.most_refuted &&
+         evidence.contrast >= options.least_contrast_of_place;
+}
+
 bool is_taken(const Standing& best, const VerdictOptions& options) {
   if (is_rivalled(best, options) || best.judged.confidence < options.min_confidence) return false;
   const Assessed& pose = best.judged.pose;
@@ -138,7 +145,15 @@ bool is_taken(const Standing& best, const VerdictOptions& options) {
   if (is_sure(best, options)) return true;
   return pose.evidence.of_object
              ? confidence_alone(pose.evidence, pose.score) >= options.least_alone
-             : pose.evidence.contradicted <= options.most_contradicted;
+             : holds_as_place(pose.evidence, options);
+}
+
+// Whether the pose's own evidence would do, were there no rivals.
+bool is_credible_alone(const Assessed& pose, const VerdictOptions& options) {
+  const Evidence& evidence = pose.evidence;
+  if (confidence_alone(evidence, pose.score) < options.min_confidence) return false;
+  return evidence.of_object || (evidence.contradicted <= options.most_contradicted &&
+                                evidence.refuted <= options.most_refuted);
 }
 
 // The best of the poses, and those that do not come close to it.
@@ -208,11 +223,10 @@ Verdict judge(std::vector<Assessed> assessed,
   for (std::size_t i = 1; i < poses.size(); ++i) {
     verdict.judged.push_back(judge_among(i, poses, entries).judged);
   }
-  const double alone = confidence_alone(poses[0].evidence, poses[0].score);
   if (is_taken(best, options)) {
     verdict.status = QueryStatus::kLocalized;
   } else if (is_rivalled(best, options) &&
-             (alone >= options.min_confidence ||
+             (is_credible_alone(poses[0], options) ||
               is_taken(judge_among(0, without_close(poses, entries, options), entries), options))) {
     verdict.status = QueryStatus::kAmbiguous;
   } else {

@@ -83,6 +83,7 @@ struct Fit {
   // Of the directions predicted, of an object those that nothing hides: amid others that are
   // contradicted too.
   double contradicted = 0.0;
+  double refuted = 0.0;        // of the query points: where the entry's scanner looked through
   double observability = 0.0;  // 0..1: weakest of the six freedoms against the strongest
   double outgrown = 0.0;       // of an object's outline: the surface seen goes on flush beyond it
   // Of an object's surface that must be seen: how many points, how closely it lies on the surface

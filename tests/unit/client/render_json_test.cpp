@@ -78,6 +78,7 @@ TEST(QueryJson, HasTheDocumentedKeysInTheDocumentedOrder) {
                           "quality",
                           "contrast",
                           "contradicted",
+                          "refuted",
                           "agreeing"));
   EXPECT_THAT(
       keys(json["query"]),

@@ -225,6 +225,7 @@ TEST(QueryResultToProto, CarriesEveryFieldAndTheDerivedForms) {
                     .agreeing = 17.0,
                     .contrast = 0.6,
                     .contradicted = 0.05,
+                    .refuted = 0.01,
                     .observability = 0.3};
   hypothesis.covariance(0, 5) = 0.125;
   result.hypotheses = {hypothesis};
@@ -259,6 +260,7 @@ TEST(QueryResultToProto, CarriesEveryFieldAndTheDerivedForms) {
   EXPECT_EQ(h.fit().observability(), 0.3);
   EXPECT_EQ(h.fit().contrast(), 0.6);
   EXPECT_EQ(h.fit().contradicted(), 0.05);
+  EXPECT_EQ(h.fit().refuted(), 0.01);
   EXPECT_EQ(h.fit().agreeing(), 17.0);
   ASSERT_THAT(h.covariance(), SizeIs(36));
   EXPECT_EQ(h.covariance(5), 0.125);

@@ -291,6 +291,37 @@ TEST(RangeImage, HidesWhatLiesBehindWhatWasMeasured) {
   EXPECT_FALSE(image.hides(Eigen::Vector3f::Zero(), kSlack_m));
 }
 
+TEST(RangeImage, LookedThroughWhatLiesBeforeWhatWasMeasured) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  constexpr float kSlack_m = 0.1F;
+  EXPECT_TRUE(image.looked_through({0.2F, 0.1F, 1.0F}, kSlack_m));
+  EXPECT_FALSE(image.looked_through({0.3F, 0.2F, 1.95F}, kSlack_m)) << "within the slack";
+  EXPECT_FALSE(image.looked_through({0.3F, 0.2F, 3.0F}, kSlack_m)) << "behind the wall";
+  EXPECT_FALSE(image.looked_through({1.0F, 0.0F, 1.0F}, kSlack_m)) << "beside the view";
+  EXPECT_FALSE(image.looked_through({0.0F, 0.0F, -1.0F}, kSlack_m)) << "behind the sensor";
+  EXPECT_FALSE(image.looked_through(Eigen::Vector3f::Zero(), kSlack_m));
+}
+
+// Cells are three patches wide from 8.6 m on: of a wall beyond, a part of the points will do.
+TEST(RangeImage, SeesAFarSurfaceWholeInPartOfItsPoints) {
+  constexpr float kDepth_m = 12.0F;
+  const RangeImage image(wall(kDepth_m), Eigen::Vector3f::Zero(), kStep);
+  Points points;
+  for (float x = -6.0F; x <= 6.0F; x += kPatch_m) {
+    for (float y = -6.0F; y <= 6.0F; y += kPatch_m) points.emplace_back(x, y, kDepth_m);
+  }
+  const SightSurface surface(points, {}, kPatch_m);
+  std::size_t in_part = 0;
+  for (const SightSurface::Block& block : surface.blocks()) {
+    in_part += block.spread_end - block.begin;
+  }
+  EXPECT_LT(in_part, points.size() / 2);
+  const SightCounts counts =
+      image.compare(surface, Eigen::Isometry3d::Identity(), kPatch_m, kTolerance);
+  EXPECT_GT(static_cast<double>(counts.agree), 0.98 * static_cast<double>(counts.measured));
+  EXPECT_EQ(counts.crossed + counts.hidden, 0U);
+}
+
 TEST(RangeImage, HoldsAgainstCloudsThatHoldNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const Points& points :

@@ -65,6 +65,33 @@ TEST(SightSurface, KeepsTheNormalsBesideTheirPoints) {
   }
 }
 
+TEST(SightSurface, PutsPointsTwiceAsFarApartFirst) {
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 2500; ++i) {
+    points.emplace_back(
+        0.05F * static_cast<float>(i % 50), 0.05F * static_cast<float>(i / 50), 0.0F);
+  }
+  const SightSurface surface(points, {}, 0.05);
+  EXPECT_EQ(sorted(surface.points()), sorted(points));
+  for (const SightSurface::Block& block : surface.blocks()) {
+    ASSERT_GT(block.spread_end, block.begin);
+    ASSERT_LE(block.spread_end, block.end);
+    for (std::uint32_t i = block.begin; i < block.end; ++i) {
+      float nearest = 1.0F;
+      for (std::uint32_t k = block.begin; k < block.spread_end; ++k) {
+        if (k != i) nearest = std::min(nearest, (surface.points()[i] - surface.points()[k]).norm());
+      }
+      if (i < block.spread_end) {
+        EXPECT_GT(nearest, 0.075F);
+      } else {
+        EXPECT_LT(nearest, 0.081F);
+      }
+    }
+  }
+  const SightSurface whole(points);
+  for (const SightSurface::Block& block : whole.blocks()) EXPECT_EQ(block.spread_end, block.end);
+}
+
 TEST(SightSurface, TakesNoPointsAndEqualOnes) {
   EXPECT_TRUE(SightSurface(std::span<const Eigen::Vector3f>{}).blocks().empty());
   const SightSurface equal(std::vector<Eigen::Vector3f>(1000, {1, 2, 3}));

@@ -21,7 +21,7 @@ Evidence overlap_of(const SurfaceGrid& grid,
                     const Surface& source,
                     const Eigen::Isometry3d& T = Eigen::Isometry3d::Identity()) {
   Evidence evidence;
-  measure_overlap(grid, source.points, source.normals, T, {}, evidence);
+  measure_overlap(grid, source.points, source.normals, T, nullptr, {}, evidence);
   return evidence;
 }
 
@@ -88,6 +88,25 @@ TEST(MeasureOverlap, FollowsThePose) {
   const Evidence evidence = overlap_of(grid_of(room), room.seen_from(T), T);
   EXPECT_GT(evidence.overlap, 0.97);  // at the edges a point may meet the other side's normal
   EXPECT_LT(overlap_of(grid_of(room), room, T).overlap, 0.5);
+}
+
+TEST(MeasureOverlap, CountsWhatLiesWhereTheScannerLookedThrough) {
+  const Surface room = testing::corner_room(0.02);
+  const SurfaceGrid grid = grid_of(room);
+  const ScannedSpace scanned(
+      room.points, std::vector<Eigen::Vector3f>{{1.5F, 1.5F, 1.2F}}, {}, grid);
+  Surface source = room;
+  Random random(3);
+  source.add({0.5, 0.5, 1.0}, {0.4, 0, 0}, {0, 0.4, 0}, 0.02, random);
+  source.add({-4, 0.5, 1.0}, {0.4, 0, 0}, {0, 0.4, 0}, 0.02, random);
+  const double added = 400.0 / static_cast<double>(source.points.size());
+  Evidence evidence;
+  measure_overlap(
+      grid, source.points, source.normals, Eigen::Isometry3d::Identity(), &scanned, {}, evidence);
+  EXPECT_NEAR(evidence.refuted, added, 0.1 * added) << "what is behind the walls is not known";
+  measure_overlap(
+      grid, source.points, source.normals, Eigen::Isometry3d::Identity(), nullptr, {}, evidence);
+  EXPECT_EQ(evidence.refuted, 0.0);
 }
 
 TEST(MeasureOverlap, SaysNothingForNothing) {

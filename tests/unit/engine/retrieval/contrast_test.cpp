@@ -28,14 +28,17 @@ struct Compared {
   SearchInput input{
       query, options, view_of_entries, levels, wanted, views, indexes, timings, context};
 
-  explicit Compared(EntryKind kind = EntryKind::kPlace) : query(clean_query(room(false))) {
+  explicit Compared(EntryKind kind = EntryKind::kPlace, bool from_known_viewpoint = false)
+      : query(clean_query(room(false))) {
     for (const bool other_box : {false, true}) {
       auto record = std::make_shared<SceneRecord>();
-      const Surface surface = surface_of(other_box, 1);
+      Surface surface = surface_of(other_box, 1);
+      if (other_box) add_annex(surface);
       record->kind = kind;
       record->prepared.points = surface.points;
       record->prepared.normals = surface.normals;
       record->prepared.resolution_m = 0.05;
+      if (from_known_viewpoint) record->prepared.viewpoints = {{1.2F, 1.5F, 1.4F}};
       record->descriptors.keypoints = {{1, 1, 0}, {0, 1, 1}, {2, 0, 1}};
       CatalogEntry stored;
       stored.record = std::move(record);
@@ -68,6 +71,10 @@ struct Compared {
     surface.add(at, {0.6, 0, 0}, {0, 0, 0.6}, 0.03, random);
     return surface;
   }
+  static void add_annex(Surface& surface) {
+    Random random(5);
+    surface.add({3.2, 0, 0}, {3, 0, 0}, {0, 3, 0}, 0.03, random);
+  }
   static PointCloud room(bool other_box) {
     PointCloud cloud;
     cloud.points = surface_of(other_box, 1).points;
@@ -91,6 +98,23 @@ TEST(ContrastPoses, IsNothingBetweenEqualPoses) {
   task.result.poses[1] = task.result.poses[0];
   contrast_poses(task.input, task.result);
   EXPECT_EQ(task.result.poses[0].contrast[1], 0.0F);
+}
+
+// The query sees more floor than the room has; the rival has that floor too. It speaks for the
+// rival unless nobody scanned there.
+TEST(ContrastPoses, LeavesOutWhatLiesWhereNobodyScanned) {
+  double contrast[2];
+  for (const bool known : {false, true}) {
+    Compared task(EntryKind::kPlace, known);
+    Surface seen = Compared::surface_of(false, 2);
+    Compared::add_annex(seen);
+    task.view.sample_points = seen.points;
+    task.view.sample_normals = seen.normals;
+    contrast_poses(task.input, task.result);
+    contrast[known ? 1 : 0] = static_cast<double>(task.result.poses[0].contrast[1]);
+  }
+  EXPECT_LT(contrast[0], 0.0);
+  EXPECT_GT(contrast[1], 0.2);
 }
 
 TEST(ContrastPoses, IsTheSameOnAnyNumberOfThreads) {

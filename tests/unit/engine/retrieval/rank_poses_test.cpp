@@ -68,6 +68,34 @@ TEST(RankPoses, PutsTheRightPoseFirst) {
   }
 }
 
+// Two poses lay about as many points on the surface; one of them puts the rest where the scanner
+// looked through, the other where nobody looked.
+TEST(RankPoses, PutsWhatStandsInEmptySpaceBehindWhatNobodySaw) {
+  Task task;
+  task.corner = testing::corner_room(0.02);
+  task.grid = SurfaceGrid(task.corner.points, task.corner.normals, kCell_m, 2);
+  const ScannedSpace scanned(
+      task.corner.points, std::vector<Eigen::Vector3f>{{1.5F, 1.5F, 1.2F}}, {}, task.grid);
+  Surface source;
+  Random random(4);
+  source.add({0.3, 0.3, 0}, {1, 0, 0}, {0, 1, 0}, 0.04, random);    // on the floor
+  source.add({0.3, 0.3, 0.9}, {1, 0, 0}, {0, 1, 0}, 0.04, random);  // and as much above it
+  task.test = select_test_points(source.points, source.normals, {}, 512, 1);
+  task.centre = {0.8, 0.8, 0.5};
+  Eigen::Isometry3d beyond = Eigen::Isometry3d::Identity();
+  beyond.translation().x() = 1.95;  // the half that was scanned a little less
+  task.proposals = {proposal_of(Eigen::Isometry3d::Identity(), 0), proposal_of(beyond, 1)};
+  ASSERT_EQ(task.rank({}).size(), 2U);
+  const float plain = task.rank({})[0].score;
+  const std::vector<RankedPose> ranked = task.rank({.scanned = &scanned});
+  ASSERT_EQ(ranked.size(), 2U);
+  const auto score_of = [&](std::uint32_t correspondence) {
+    return ranked[0].correspondence == correspondence ? ranked[0].score : ranked[1].score;
+  };
+  EXPECT_LT(score_of(0), 0.3F * plain) << "half of it hangs in the room";
+  EXPECT_EQ(ranked[0].correspondence, 1U);
+}
+
 TEST(RankPoses, GivesDistinctPosesAndNoMoreThanAsked) {
   Task task = haystack(300, 7);
   for (std::uint32_t i = 0; i < 100; ++i) {  // the right one again and again

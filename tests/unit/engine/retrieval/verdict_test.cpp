@@ -126,6 +126,24 @@ TEST(Judge, TakesNoUnsurePoseThatAnAreaOfTheViewContradicts) {
   EXPECT_EQ(sure.status, QueryStatus::kLocalized);
 }
 
+TEST(Judge, TakesNoUnsurePoseThatStandsInEmptySpaceOrThatPointsSpeakAgainst) {
+  Assessed best = good(0, kZero, 0.8);
+  Assessed rival = good(0, {5, 0, 0}, 0.5);
+  const auto verdict = [&](double refuted, float contrast, double agreeing) {
+    best.evidence.refuted = refuted;
+    best.evidence.contradicted = 0.045;
+    best.evidence.agreeing = agreeing;
+    return judge(compared(best, rival, contrast), entries(1, 0.05), kZero, {});
+  };
+  EXPECT_EQ(verdict(0.004, 0.2F, 3.0).status, QueryStatus::kLocalized);
+  EXPECT_LT(verdict(0.01, 0.2F, 3.0).judged[0].confidence, VerdictOptions{}.sure_confidence);
+  EXPECT_EQ(verdict(0.01, 0.2F, 3.0).status, QueryStatus::kNotFound);
+  EXPECT_EQ(verdict(0.01, 0.2F, 4000.0).status, QueryStatus::kLocalized) << "sure";
+  EXPECT_EQ(verdict(0.0, -0.1F, 12.0).status, QueryStatus::kLocalized);
+  EXPECT_EQ(verdict(0.0, -0.25F, 12.0).status, QueryStatus::kNotFound);
+  EXPECT_GE(verdict(0.0, -0.25F, 12.0).judged[0].confidence, 0.5);
+}
+
 TEST(Judge, CallsTheSamePoseInAnotherEntryARival) {
   const Verdict verdict =
       judge({good(0, kZero, 0.8), good(1, kZero, 0.8)}, entries(2, 0.05), kZero, {});
