@@ -14,6 +14,7 @@ constexpr double kFullObservability = 0.05;  // likewise
 constexpr double kFullStructure = 0.3;       // as in engine/retrieval/object_confidence.cpp
 
 double as_it_is(double x) { return x; }
+double root(double x) { return std::sqrt(std::max(x, 0.0)); }
 double log_count(double x) { return std::log1p(std::max(x, 0.0)); }
 
 constexpr auto kAlways = Feature::Use::kAlways;
@@ -36,17 +37,9 @@ const Feature kFeatures[] = {
     {"crossed", "crossed", "crossed", as_it_is, kAlways},
     {"log_inliers", "inliers", "log(1 + inliers)", log_count, kAlways},
     {"contrast", "contrast", "contrast", as_it_is, kWherePresent},
-    {"root_contradicted",
-     "contradicted",
-     "sqrt(contradicted)",
-     [](double x) { return std::sqrt(std::max(x, 0.0)); },
-     kWherePresent},
+    {"root_contradicted", "contradicted", "sqrt(contradicted)", root, kWherePresent},
     {"log_agreeing", "agreeing", "log(1 + agreeing)", log_count, kOnRequest},
-    {"root_refuted",
-     "refuted",
-     "sqrt(refuted)",
-     [](double x) { return std::sqrt(std::max(x, 0.0)); },
-     kOnRequest},
+    {"root_refuted", "refuted", "sqrt(refuted)", root, kOnRequest},
     {"quality", "quality", "quality", as_it_is, kOnRequest},
     {"coverage", "coverage", "coverage", as_it_is, kOnRequest},
     {"outgrown", "outgrown", "outgrown", as_it_is, kOnRequest},

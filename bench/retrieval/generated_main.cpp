@@ -203,7 +203,8 @@ Generated generate(const Settings& settings, const RunContext& context) {
   for (int i = 0; i < settings.places + settings.strangers; ++i) {
     made.places.push_back(place_of(settings, i, settings.day));
     if (i >= settings.places) continue;
-    made.catalog->entries.push_back(index_place(place_of(settings, i, 0), settings, i, context));
+    const auto scanned = settings.day == 0 ? made.places.back() : place_of(settings, i, 0);
+    made.catalog->entries.push_back(index_place(scanned, settings, i, context));
     made.entries.push_back(make_entry(made.catalog->entries.back()));
   }
   return made;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/base/error.hpp"
+#include "engine/cloud/keep_points.hpp"
 #include "engine/cloud/spatial_index.hpp"
 
 namespace landmarkdb {
@@ -81,13 +82,6 @@ class SeenPositions {
   const std::vector<Eigen::Vector3f>& points_;
   std::vector<std::uint32_t> slots_;
 };
-
-template <typename T>
-void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
-  if (values.empty()) return;
-  for (std::size_t k = 0; k < kept.size(); ++k) values[k] = values[kept[k]];
-  values.resize(kept.size());
-}
 
 bool is_unit(const Eigen::Vector3f& normal) {
   constexpr float kTolerance = 0.1F;  // rounded to one digit, a unit normal is still inside
@@ -186,10 +180,7 @@ CloudCounts sanitise(PointCloud& cloud, const RunContext& context) {
     }
   }
   counts.used = kept.size();
-  keep(cloud.points, kept);
-  keep(cloud.normals, kept);
-  keep(cloud.colours, kept);
-  keep(cloud.viewpoint_index, kept);
+  keep_points(cloud, kept);
   repair_normals(cloud.points, cloud.normals, context);
   check_viewpoints(cloud);
   cloud.width = 0;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/cloud/keep_points.hpp"
 #include "engine/cloud/voxel_cells.hpp"
 
 namespace landmarkdb {
@@ -34,36 +35,25 @@ bool has_company(const std::vector<Eigen::Vector3f>& points,
   return false;
 }
 
-template <typename T>
-void keep_only(const std::vector<char>& kept, std::vector<T>& values) {
-  if (values.size() != kept.size()) return;  // the cloud has none of these
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    if (kept[i] != 0) values[next++] = values[i];
-  }
-  values.resize(next);
-}
-
 }  // namespace
 
 std::size_t drop_strays(PointCloud& cloud, double radius_m, const RunContext& context) {
   const VoxelCells cells = group_by_voxel(cloud.points, radius_m, context);
   const auto radius = static_cast<float>(radius_m);
-  std::vector<char> kept(cloud.size(), 1);
-  std::size_t strays = 0;
+  std::vector<char> alone(cloud.size(), 0);
   for (const VoxelCell& cell : cells.cells) {
     for (std::uint32_t k = cell.begin; k < cell.end; ++k) {
       const std::uint32_t i = cells.order[k];
-      if (has_company(cloud.points, cells, cell, i, radius)) continue;
-      kept[i] = 0;
-      ++strays;
+      alone[i] = has_company(cloud.points, cells, cell, i, radius) ? 0 : 1;
     }
   }
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (alone[i] == 0) kept.push_back(i);
+  }
+  const std::size_t strays = cloud.size() - kept.size();
   if (static_cast<double>(strays) > kMostStrays * static_cast<double>(cloud.size())) return 0;
-  keep_only(kept, cloud.points);
-  keep_only(kept, cloud.normals);
-  keep_only(kept, cloud.colours);
-  keep_only(kept, cloud.viewpoint_index);
+  keep_points(cloud, kept);
   return strays;
 }
 

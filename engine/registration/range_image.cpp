@@ -21,6 +21,17 @@ constexpr int kWidestPatch = 6;  // cells to each side: what stands at the lens 
 
 }  // namespace
 
+std::vector<std::vector<Eigen::Vector3f>> points_by_viewpoint(
+    std::span<const Eigen::Vector3f> points,
+    std::size_t viewpoints,
+    std::span<const std::uint16_t> viewpoint_index) {
+  std::vector<std::vector<Eigen::Vector3f>> seen(viewpoints);
+  for (std::size_t i = 0; i < points.size() && viewpoints > 0; ++i) {
+    seen[viewpoint_index.empty() ? 0 : viewpoint_index[i]].push_back(points[i]);
+  }
+  return seen;
+}
+
 RangeImage::RangeImage(std::span<const Eigen::Vector3f> points,
                        const Eigen::Vector3f& viewpoint,
                        double finest_step_rad)
@@ -192,19 +203,15 @@ RangeImage::Rendered RangeImage::render(const SightSurface& surface,
   const float far_m = 3.0F * patch_m / static_cast<float>(step_rad_);
   Rendered rendered;
   rendered.predicted.assign(inner_.size(), {kInfinity, false});
+  const SightKernel look = sight_kernel();
   std::array<SightRay, SightSurface::kBlockPoints> rays;
   for (const SightSurface::Block& block : surface.blocks()) {
     const Eigen::Vector3f centre = view.R_view_surface * block.centre + view.t_view_surface;
     if (!in_view(centre, block.radius_m)) continue;
     const bool is_far = centre.norm() - block.radius_m > far_m;
     const std::size_t count = (is_far ? block.spread_end : block.end) - block.begin;
-    const Eigen::Vector3f* normals =
-        surface.has_normals() ? surface.normals().data() + block.begin : nullptr;
-    sight_kernel()(surface.points()[block.begin].data(),
-                   normals == nullptr ? nullptr : normals->data(),
-                   count,
-                   view,
-                   rays.data());
+    const float* normals = surface.has_normals() ? surface.normals()[block.begin].data() : nullptr;
+    look(surface.points()[block.begin].data(), normals, count, view, rays.data());
     for (const SightRay& ray : std::span(rays).first(count)) {
       if (!(ray.range_m > 0.0F)) continue;
       const int half = static_cast<int>(
@@ -302,19 +309,21 @@ void RangeImage::count_solid(const std::array<Box, 6>& boxes,
   });
 }
 
-bool RangeImage::hides(const Eigen::Vector3f& p, float slack_m) const {
+RangeImage::Measured RangeImage::measured_at(const Eigen::Vector3f& p) const {
+  constexpr Cell kNothing{0.0F, 0.0F};
   const Eigen::Vector3f ray = p - viewpoint_;
   const float range = ray.norm();
-  if (!(range > 0.0F) || cone_axis_.dot(ray) < cone_cosine_ * range) return false;
-  const Cell& wide = widened_[index_of(place_of(ray))];
+  if (!(range > 0.0F) || cone_axis_.dot(ray) < cone_cosine_ * range) return {range, kNothing};
+  return {range, widened_[index_of(place_of(ray))]};
+}
+
+bool RangeImage::hides(const Eigen::Vector3f& p, float slack_m) const {
+  const auto [range, wide] = measured_at(p);
   return wide.furthest > 0.0F && range > wide.furthest + slack_m;
 }
 
 bool RangeImage::looked_through(const Eigen::Vector3f& p, float slack_m) const {
-  const Eigen::Vector3f ray = p - viewpoint_;
-  const float range = ray.norm();
-  if (!(range > 0.0F) || cone_axis_.dot(ray) < cone_cosine_ * range) return false;
-  const Cell& wide = widened_[index_of(place_of(ray))];
+  const auto [range, wide] = measured_at(p);
   return wide.furthest > 0.0F && range < wide.nearest - slack_m;
 }
 

@@ -46,6 +46,12 @@ struct SightTolerance {
   float share = 0.0F;
 };
 
+// The points of each of the viewpoints, in their order; without an index all are of the first.
+std::vector<std::vector<Eigen::Vector3f>> points_by_viewpoint(
+    std::span<const Eigen::Vector3f> points,
+    std::size_t viewpoints,
+    std::span<const std::uint16_t> viewpoint_index);
+
 // The nearest and furthest range a cloud has in each direction from its viewpoint: free space as
 // the sensor saw it. The sphere is cut into the six faces of a cube, each into cells of equal
 // angle, so that no direction is a pole; directions never measured stay unknown. Works for a depth
@@ -107,6 +113,13 @@ class RangeImage {
     std::vector<Predicted> predicted;
     std::array<Box, 6> boxes;  // of each face
   };
+  // How far off a point is, and what was measured around its direction; furthest = 0: not all of it
+  // was.
+  struct Measured {
+    float range;
+    Cell wide;
+  };
+  Measured measured_at(const Eigen::Vector3f& p) const;
   // Whether anything of a block, its centre seen from the viewpoint, may lie in view.
   bool in_view(const Eigen::Vector3f& centre, float radius_m) const;
   Rendered render(const SightSurface& surface,

@@ -65,10 +65,7 @@ ScannedSpace::ScannedSpace(std::span<const Eigen::Vector3f> points,
                            std::span<const std::uint16_t> viewpoint_index,
                            const SurfaceGrid& surface)
     : slack_m_(kSlackCells * surface.cell_m()) {
-  std::vector<std::vector<Eigen::Vector3f>> seen(viewpoints.size());
-  for (std::size_t i = 0; i < points.size() && !viewpoints.empty(); ++i) {
-    seen[viewpoint_index.empty() ? 0 : viewpoint_index[i]].push_back(points[i]);
-  }
+  const auto seen = points_by_viewpoint(points, viewpoints.size(), viewpoint_index);
   std::vector<std::size_t> order(viewpoints.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

@@ -76,10 +76,8 @@ std::vector<RangeImage> range_images(const PointCloud& cloud, double finest_step
   if (cloud.viewpoint_index.empty()) {
     return {RangeImage(cloud.points, cloud.viewpoints[0], finest_step_rad)};
   }
-  std::vector<std::vector<Eigen::Vector3f>> seen(cloud.viewpoints.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    seen[cloud.viewpoint_index[i]].push_back(cloud.points[i]);
-  }
+  const auto seen =
+      points_by_viewpoint(cloud.points, cloud.viewpoints.size(), cloud.viewpoint_index);
   std::vector<RangeImage> images;
   for (std::size_t k = 0; k < seen.size(); ++k) {
     if (!seen[k].empty()) images.emplace_back(seen[k], cloud.viewpoints[k], finest_step_rad);

@@ -131,10 +131,15 @@ bool holds_as_object(const Standing& best, const VerdictOptions& options) {
          pose.evidence.contradicted <= options.most_contradicted_of_object;
 }
 
+// Whether neither sensor nor scanner looked through much of what a place's pose puts somewhere.
+bool leaves_free_space(const Evidence& evidence, const VerdictOptions& options) {
+  return evidence.contradicted <= options.most_contradicted &&
+         evidence.refuted <= options.most_refuted;
+}
+
 // What is asked of a place's pose that is not sure.
 bool holds_as_place(const Evidence& evidence, const VerdictOptions& options) {
-  return evidence.contradicted <= options.most_contradicted &&
-         evidence.refuted <= options.most_refuted &&
+  return leaves_free_space(evidence, options) &&
          evidence.contrast >= options.least_contrast_of_place;
 }
 
@@ -152,8 +157,7 @@ bool is_taken(const Standing& best, const VerdictOptions& options) {
 bool is_credible_alone(const Assessed& pose, const VerdictOptions& options) {
   const Evidence& evidence = pose.evidence;
   if (confidence_alone(evidence, pose.score) < options.min_confidence) return false;
-  return evidence.of_object || (evidence.contradicted <= options.most_contradicted &&
-                                evidence.refuted <= options.most_refuted);
+  return evidence.of_object || leaves_free_space(evidence, options);
 }
 
 // The best of the poses, and those that do not come close to it.
