@@ -83,7 +83,9 @@ Funnel follow(const PointCloud& cloud,
     const Meeting meeting{.target = entry.grid,
                           .source = view.sample_points,
                           .source_normals = view.sample_normals,
-                          .tolerance_m = common_tolerance_m(input, entry)};
+                          .tolerance_m = common_tolerance_m(input, entry),
+                          .precise = view.precise_points,
+                          .precise_normals = view.precise_normals};
     Assessed from_truth = assess_coarse(meeting, entry, query, truth);
     assess_fine(meeting, entry, query, from_truth);
     funnel.truth_score = from_truth.score;

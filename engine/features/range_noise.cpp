@@ -92,9 +92,25 @@ float scatter_about_quadric(const CellGrid& grid,
                                                  static_cast<double>(found.size() - kParameters)));
 }
 
-float range_of(const PreparedCloud& cloud, std::size_t i) {
+// How a point was seen.
+struct Ray {
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();  // unit
+  float range_m = 0.0F;
+
+  // How much of a scatter along the ray is left along a normal. Of what is grazed the rest has
+  // other causes.
+  float steepness(const Eigen::Vector3f& normal) const {
+    constexpr float kGrazing = 0.1F;
+    return std::max(std::abs(normal.dot(direction)), kGrazing);
+  }
+};
+
+Ray ray_to(const PreparedCloud& cloud, std::size_t i) {
   const std::size_t which = cloud.viewpoint_index.empty() ? 0 : cloud.viewpoint_index[i];
-  return (cloud.points[i] - cloud.viewpoints[which]).norm();
+  const Eigen::Vector3f sight = cloud.points[i] - cloud.viewpoints[which];
+  const float range_m = sight.norm();
+  if (!(range_m > 0.0F)) return {};
+  return {sight / range_m, range_m};
 }
 
 std::size_t bin_of(double first_range_m, float range_m) {
@@ -124,7 +140,7 @@ std::vector<std::vector<std::uint32_t>> sample_bins(const PreparedCloud& cloud,
   constexpr std::size_t kEnoughOfBin = 250;
   std::vector<std::vector<std::uint32_t>> bins;
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-    const std::size_t bin = bin_of(first_range_m, range_of(cloud, i));
+    const std::size_t bin = bin_of(first_range_m, ray_to(cloud, i).range_m);
     if (bin >= bins.size()) bins.resize(bin + 1);
     bins[bin].push_back(i);
   }
@@ -137,23 +153,26 @@ std::vector<std::vector<std::uint32_t>> sample_bins(const PreparedCloud& cloud,
   return bins;
 }
 
-// How far the neighbourhoods of these points are from planes; those that have none are left out.
-std::vector<float> flatness(const PreparedCloud& cloud,
-                            const CellGrid& grid,
-                            std::span<const std::uint32_t> sample,
-                            double radius_m,
-                            SurfaceShape shape,
-                            const RunContext& context) {
+// How far the neighbourhoods of these points scatter about planes, along their rays; about bent
+// surface, along its normal. Those that have none are left out.
+std::vector<float> scatter_of(const PreparedCloud& cloud,
+                              const CellGrid& grid,
+                              std::span<const std::uint32_t> sample,
+                              double radius_m,
+                              SurfaceShape shape,
+                              const RunContext& context) {
   std::vector<float> sigma(sample.size());
   parallel_chunks(sample.size(), context.threads, [&](std::size_t begin, std::size_t end) {
     std::vector<CellGrid::Found> found;
     for (std::size_t k = begin; k < end; ++k) {
       if ((k - begin) % kBlock == 0) context.check("preprocess");
       const bool bent = shape == SurfaceShape::kBent;
-      const float radius = bent ? static_cast<float>(radius_m)
-                                : noise_radius_m(radius_m, range_of(cloud, sample[k]));
+      const Ray ray = ray_to(cloud, sample[k]);
+      const float radius =
+          bent ? static_cast<float>(radius_m) : noise_radius_m(radius_m, ray.range_m);
       const PlaneFit plane = fit_plane(grid, cloud.points[sample[k]], radius, found);
-      sigma[k] = bent ? scatter_about_quadric(grid, plane, found, radius) : plane.sigma_m;
+      sigma[k] = bent ? scatter_about_quadric(grid, plane, found, radius)
+                      : plane.sigma_m / ray.steepness(plane.normal);
     }
   });
   std::erase_if(sigma, [](float value) { return !std::isfinite(value); });
@@ -201,7 +220,7 @@ RangeNoise measure_range_noise(const PreparedCloud& cloud,
   const CellGrid grid(cloud.points, radius_m / kCellsPerRadius);
   std::vector<std::vector<float>> bins;
   for (const std::vector<std::uint32_t>& sample : sample_bins(cloud, noise.first_range_m)) {
-    bins.push_back(flatness(cloud, grid, sample, radius_m, shape, context));
+    bins.push_back(scatter_of(cloud, grid, sample, radius_m, shape, context));
   }
   std::vector<Bin> measured;
   for (std::vector<float>& bin : bins) {
@@ -218,13 +237,14 @@ RangeNoise measure_range_noise(const PreparedCloud& cloud,
   return noise;
 }
 
-std::vector<float> range_weights(const PreparedCloud& cloud, const RangeNoise& noise) {
+std::vector<float> range_weights(const PreparedCloud& cloud, const RangeNoise& noise, float left) {
   std::vector<float> weights(cloud.size(), 1.0F);
   if (noise.sigma_m.empty()) return weights;
-  constexpr double kHalf = 0.3;  // of the resolution: noise at which a point counts for half
+  constexpr double kHalf = 0.3;  // of the resolution: an error of which a point counts for half
   const auto half = static_cast<float>(kHalf * cloud.resolution_m);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const float ratio = noise.at(range_of(cloud, i)) / half;
+    const Ray ray = ray_to(cloud, i);
+    const float ratio = left * noise.at(ray.range_m) * ray.steepness(cloud.normals[i]) / half;
     weights[i] = 1.0F / (1.0F + ratio * ratio);
   }
   return weights;
@@ -235,7 +255,7 @@ void flatten_range_noise(PreparedCloud& cloud,
                          double radius_m,
                          const RunContext& context) {
   constexpr double kHarmless = 0.2;        // of the resolution: normals and descriptors bear it
-  constexpr float kRadiusPerNoise = 7.0F;  // wide enough to hold the whole slab of scattered points
+  constexpr float kRadiusPerNoise = 5.0F;  // wide enough to hold the whole slab of scattered points
   constexpr double kMostWider = 3.0;       // times the radius
   constexpr float kStillPlane = 2.0F;      // times the noise: beyond, the surface is no plane
   constexpr float kNarrower = 0.7F;
@@ -253,14 +273,15 @@ void flatten_range_noise(PreparedCloud& cloud,
     std::vector<CellGrid::Found> found;
     for (std::size_t i = begin; i < end; ++i) {
       if ((i - begin) % kBlock == 0) context.check("preprocess");
-      const float sigma_m = noise.at(range_of(cloud, i));
+      const Ray ray = ray_to(cloud, i);
+      const float sigma_m = noise.at(ray.range_m);
       if (sigma_m <= harmless) continue;
       const auto least = static_cast<float>(radius_m);
       float radius =
           std::clamp(kRadiusPerNoise * sigma_m, least, static_cast<float>(kMostWider * radius_m));
       for (; radius >= least; radius *= kNarrower) {
         const PlaneFit fit = fit_plane(grid, cloud.points[i], radius, found);
-        if (!(fit.sigma_m <= kStillPlane * sigma_m)) continue;
+        if (!(fit.sigma_m <= kStillPlane * sigma_m * ray.steepness(fit.normal))) continue;
         flat.points[i] -= fit.normal * fit.normal.dot(cloud.points[i] - fit.mean);
         flat.normals[i] = fit.normal.dot(cloud.normals[i]) < 0.0F ? -fit.normal : fit.normal;
         break;

@@ -7,9 +7,11 @@
 
 namespace landmarkdb {
 
-// How far a sensor's points scatter about the surface, by their range, as the cloud itself shows
-// it. A depth camera's noise grows with the square of the range: millimetres at arm's length, a
-// decimetre across a hall (Nguyen, Izadi, Lovell 2012), more than a voxel.
+// How far a sensor's points scatter along its rays, by their range, as the cloud itself shows it. A
+// depth camera's noise grows with the square of the range: millimetres at arm's length, a decimetre
+// across a hall (Nguyen, Izadi, Lovell 2012), more than a voxel. What lies along the rays, a floor
+// far away, scatters within itself and stays thin. About surface that bends (SurfaceShape::kBent)
+// the scatter is along the normal.
 struct RangeNoise {
   double first_range_m = 0.0;  // where the first bin begins; each is `kStep` times as far
   std::vector<float> sigma_m;  // by bin; never falls with the range
@@ -38,8 +40,9 @@ void flatten_range_noise(PreparedCloud& cloud,
                          double radius_m,
                          const RunContext& context);
 
-// How much each point can be relied on, 0..1: 1 where the noise at its range is nothing against the
-// cloud's resolution, and little where it is as large.
-std::vector<float> range_weights(const PreparedCloud& cloud, const RangeNoise& noise);
+// How much each point can be relied on, 0..1: 1 where the error along its normal is nothing against
+// the cloud's resolution, and little where it is as large. The error is the noise where the cloud
+// is as it was measured, and the share `left` of it where that was laid flat.
+std::vector<float> range_weights(const PreparedCloud& cloud, const RangeNoise& noise, float left);
 
 }  // namespace landmarkdb

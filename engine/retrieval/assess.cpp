@@ -63,6 +63,15 @@ VerifyOptions verify_options(const Meeting& meeting) {
   return options;
 }
 
+// The last millimetres, by what is to be relied on.
+void refine_precisely(const Meeting& meeting, Assessed& assessed) {
+  IcpOptions options;
+  options.start_scale_cells = options.end_scale_cells;
+  assessed.icp = refine_icp(
+      meeting.target, meeting.precise, meeting.precise_normals, assessed.T_entry_sensor, options);
+  assessed.T_entry_sensor = assessed.icp.T_target_source;
+}
+
 }  // namespace
 
 bool same_spot(const Assessed& a,
@@ -137,10 +146,11 @@ void assess_fine(const Meeting& meeting,
                             options);
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
   if (meeting.entry_is_source) refine_seen(meeting, query, assessed);
+  const IcpResult refined = assessed.icp;
+  if (!meeting.precise.empty()) refine_precisely(meeting, assessed);
   Evidence& evidence = assessed.evidence;
   evidence = {};
-  evidence.observability =
-      observability(assessed.icp, extent_of(meeting.source), meeting.source.size());
+  evidence.observability = observability(refined, extent_of(meeting.source), meeting.source.size());
   const VerifyOptions verify = verify_options(meeting);
   if (meeting.entry_is_source) {
     look_at_object(meeting, entry, query, meeting.source.size(), assessed);

@@ -55,6 +55,10 @@ struct Meeting {
   double tolerance_m = 0.0;
   // What the sensor saw, finer than the query's own where objects are asked for; empty: those.
   std::span<const RangeImage> ranges{};
+  // Of a place: the points that the last refinement goes by (QueryView::precise_points); empty:
+  // there is none.
+  std::span<const Eigen::Vector3f> precise{};
+  std::span<const Eigen::Vector3f> precise_normals{};
   const RangeNoise* noise = nullptr;  // of the target, where it is known
 };
 

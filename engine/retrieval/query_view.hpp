@@ -46,6 +46,10 @@ struct QueryView {
   TestPoints test;                             // for testing proposals, most telling first
   std::vector<Eigen::Vector3f> sample_points;  // spread evenly, for refinement and overlap
   std::vector<Eigen::Vector3f> sample_normals;
+  // Of places: points as they were measured, the fewer the noisier they are. Laying noise flat
+  // rounds corners off; the last refinement goes by these.
+  std::vector<Eigen::Vector3f> precise_points;
+  std::vector<Eigen::Vector3f> precise_normals;
   RangeNoise noise;                 // of a view for objects, about bent surface
   std::vector<PlaneLayout> planes;  // what may be the frames of right angles it shows
 };

@@ -269,7 +269,9 @@ void search_paper(const SearchInput& input, SearchResult& result) {
       [&](const EntryMatches& matches) {
         return Meeting{.target = input.entries[matches.entry].grid,
                        .source = matches.view->sample_points,
-                       .source_normals = matches.view->sample_normals};
+                       .source_normals = matches.view->sample_normals,
+                       .precise = matches.view->precise_points,
+                       .precise_normals = matches.view->precise_normals};
       },
       result);
 }

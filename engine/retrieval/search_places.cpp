@@ -220,7 +220,9 @@ void search_places(const SearchInput& input, SearchResult& result) {
         return Meeting{.target = input.entries[matches.entry].grid,
                        .source = matches.view->sample_points,
                        .source_normals = matches.view->sample_normals,
-                       .tolerance_m = common_tolerance_m(input, input.entries[matches.entry])};
+                       .tolerance_m = common_tolerance_m(input, input.entries[matches.entry]),
+                       .precise = matches.view->precise_points,
+                       .precise_normals = matches.view->precise_normals};
       },
       result);
 }

@@ -91,19 +91,60 @@ TEST(FlattenRangeNoise, MakesFarWallsThinAndTheirNormalsRight) {
   EXPECT_EQ(cloud.normals.size(), cloud.size());
 }
 
+// A floor far ahead of a low sensor that grazes it: the noise is along the rays, and hardly leaves
+// the floor.
+PointCloud grazed_floor(double noise_at_one_metre) {
+  constexpr double kHeight_m = 0.8;
+  Random random(2);
+  PointCloud cloud;
+  cloud.viewpoints.emplace_back(0.0F, 0.0F, 0.0F);
+  for (int i = 0; i < 60'000; ++i) {
+    const Eigen::Vector3d p(random.uniform(-2.0, 2.0), kHeight_m, random.uniform(3.0, 7.0));
+    const double range = p.norm();
+    const double off = noise_at_one_metre * range * range * random.normal();
+    cloud.points.push_back((p * (1.0 + off / range)).cast<float>());
+  }
+  return cloud;
+}
+
+TEST(MeasureRangeNoise, IsMeasuredAlongTheRaysOfWhatTheyGraze) {
+  const RangeNoise noise = measure_range_noise(prepared(grazed_floor(0.001)), kRadius_m, {});
+  EXPECT_NEAR(noise.at(5.0F), 0.025F, 0.012F);
+  EXPECT_NEAR(noise.at(6.2F), 0.038F, 0.018F);
+}
+
 TEST(RangeWeights, TrustsNearPointsMoreThanFarOnes) {
   const PreparedCloud cloud = prepared(two_walls(0.002));
-  const std::vector<float> weights =
-      range_weights(cloud, measure_range_noise(cloud, kRadius_m, {}));
-  ASSERT_EQ(weights.size(), cloud.size());
+  const RangeNoise noise = measure_range_noise(cloud, kRadius_m, {});
+  const std::vector<float> measured = range_weights(cloud, noise, 1.0F);
+  const std::vector<float> laid_flat = range_weights(cloud, noise, 0.1F);
+  ASSERT_EQ(measured.size(), cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (cloud.points[i].z() > 4.0F) {
-      EXPECT_LT(weights[i], 0.2F);
+      ASSERT_LT(measured[i], 0.8F);
     } else {
-      EXPECT_GT(weights[i], 0.6F);
+      ASSERT_GT(measured[i], 0.5F);
     }
+    ASSERT_GE(laid_flat[i], measured[i]);
   }
-  EXPECT_THAT(range_weights(cloud, RangeNoise{}), ::testing::Each(1.0F));
+  EXPECT_THAT(range_weights(cloud, RangeNoise{}, 1.0F), ::testing::Each(1.0F));
+}
+
+TEST(RangeWeights, TrustsAFloorFarAwayMoreThanAWallThatFacesTheSensor) {
+  const auto mean_weight = [](const PreparedCloud& cloud) {
+    const std::vector<float> weights =
+        range_weights(cloud, measure_range_noise(cloud, kRadius_m, {}), 1.0F);
+    double sum = 0.0;
+    double far = 0.0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (cloud.points[i].norm() < 5.5F || cloud.points[i].norm() > 6.5F) continue;
+      sum += static_cast<double>(weights[i]);
+      far += 1.0;
+    }
+    return sum / far;
+  };
+  EXPECT_GT(mean_weight(prepared(grazed_floor(0.002))),
+            2.0 * mean_weight(prepared(two_walls(0.002))));
 }
 
 TEST(FlattenRangeNoise, LeavesACleanCloudAsItIs) {

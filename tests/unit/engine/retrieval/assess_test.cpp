@@ -64,6 +64,21 @@ TEST(Assess, RefinesTheRightPoseAndFindsItGood) {
   EXPECT_GT(fine.evidence.observability, 0.01);
 }
 
+// The points that the score goes by lie 2 cm off, as if rounded by laying noise flat.
+TEST(Assess, EndsOnThePrecisePoints) {
+  Seen seen;
+  std::vector<Eigen::Vector3f> off = seen.here.points;
+  for (std::size_t i = 0; i < off.size(); ++i) off[i] += 0.02F * seen.here.normals[i];
+  seen.meeting.source = off;
+  const Assessed without = seen.assess(seen.T_entry_sensor);
+  EXPECT_GT((without.T_entry_sensor.translation() - seen.T_entry_sensor.translation()).norm(),
+            0.015);
+  seen.meeting.precise = seen.here.points;
+  seen.meeting.precise_normals = seen.here.normals;
+  const Assessed with = seen.assess(seen.T_entry_sensor);
+  EXPECT_THAT(with.T_entry_sensor, PoseNear(seen.T_entry_sensor, 0.005, 0.004));
+}
+
 TEST(Assess, FindsAWrongPosePoor) {
   const Seen seen;
   const double right = seen.assess(seen.T_entry_sensor).score;

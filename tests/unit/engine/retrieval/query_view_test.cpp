@@ -87,6 +87,8 @@ TEST(ViewQuery, DescribesTheCloudAtTheResolutionAsked) {
   EXPECT_EQ(view.test.size(), 512U);
   EXPECT_EQ(view.sample_points.size(), std::min<std::size_t>(view.prepared.size(), 4000));
   EXPECT_EQ(view.sample_normals.size(), view.sample_points.size());
+  EXPECT_GT(view.precise_points.size(), 1000U);
+  EXPECT_EQ(view.precise_normals.size(), view.precise_points.size());
   // Turned to the sensor: what it saw faces it.
   for (std::size_t i = 0; i < view.sample_points.size(); ++i) {
     ASSERT_LE(view.sample_normals[i].dot(view.sample_points[i]), 1e-4F);
