@@ -40,6 +40,10 @@ class CellGrid {
   // without overlap. `out` is overwritten.
   void runs(const Eigen::Vector3f& query, float radius_m, std::vector<Run>& out) const;
 
+  // The occupied cells, and the places of one of them.
+  std::size_t cells() const { return keys_.size(); }
+  Run cell(std::size_t i) const { return {start_[i], start_[i + 1]}; }
+
   std::size_t size() const { return order_.size(); }
   std::span<const std::uint32_t> order() const { return order_; }
   std::span<const float> x() const { return x_; }  // by place

@@ -6,78 +6,45 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <utility>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "engine/base/parallel.hpp"
-#include "engine/cloud/voxel_grid.hpp"
 #include "engine/features/cell_grid.hpp"
+#include "engine/features/neighbourhood.hpp"
+#include "engine/features/sensor_ray.hpp"
 
 namespace landmarkdb {
 namespace {
 
-constexpr double kCellsPerRadius = 1.0;  // the radii looked at are up to three times as large
 constexpr std::size_t kBlock = 256;      // points between two looks at the stop request
 constexpr std::size_t kFewestOfBin = 50;
 constexpr double kMostWider = 3.0;  // times the normals' radius: the widest neighbourhood looked at
 constexpr double kFlattest = 0.25;  // share of a bin's points that are taken for planar
 
-struct PlaneFit {
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-  float sigma_m = std::numeric_limits<float>::infinity();
-};
-
-PlaneFit fit_plane(const CellGrid& grid,
-                   const Eigen::Vector3f& at,
-                   float radius_m,
-                   std::vector<CellGrid::Found>& found) {
-  constexpr std::size_t kFewest = 6;
-  PlaneFit fit;
-  grid.within(at, radius_m, found);
-  if (found.size() < kFewest) return fit;
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-  for (const CellGrid::Found& f : found) {
-    const Eigen::Vector3f d = grid.point(f.place) - at;
-    mean += d;
-    squares.noalias() += d * d.transpose();
-  }
-  const auto n = static_cast<float>(found.size());
-  mean /= n;
-  const Eigen::Matrix3f covariance = squares / n - mean * mean.transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(covariance);
-  fit.mean = at + mean;
-  fit.normal = solver.eigenvectors().col(0);
-  fit.sigma_m = std::sqrt(std::max(solver.eigenvalues()(0), 0.0F));
-  if (!fit.normal.allFinite()) fit.sigma_m = std::numeric_limits<float>::infinity();
-  return fit;
-}
-
 // What a neighbourhood scatters about a surface that bends: a quadric over the plane fitted.
 // Infinite where there are too few points for one.
-float scatter_about_quadric(const CellGrid& grid,
-                            const PlaneFit& plane,
-                            std::span<const CellGrid::Found> found,
+float scatter_about_quadric(const Neighbourhood& around,
+                            const ScatterPlane& plane,
+                            const Eigen::Vector3f& at,
                             float radius_m) {
   constexpr std::size_t kParameters = 6;
   constexpr std::size_t kFewest = 2 * kParameters;
-  if (found.size() < kFewest || !std::isfinite(plane.sigma_m)) {
-    return std::numeric_limits<float>::infinity();
-  }
+  if (!std::isfinite(plane.sigma_m)) return std::numeric_limits<float>::infinity();
   using Vector6d = Eigen::Matrix<double, kParameters, 1>;
   Eigen::Matrix<double, kParameters, kParameters> A =
       Eigen::Matrix<double, kParameters, kParameters>::Zero();
   Vector6d b = Vector6d::Zero();
   double squares = 0.0;
+  std::size_t found = 0;
   const Eigen::Vector3f right = plane.normal.unitOrthogonal();
   const Eigen::Vector3f up = plane.normal.cross(right);
-  for (const CellGrid::Found& f : found) {
-    const Eigen::Vector3f d = (grid.point(f.place) - plane.mean) / radius_m;
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    const Eigen::Vector3f p = around.point(i);
+    if (!((p - at).squaredNorm() < radius_m * radius_m)) continue;
+    ++found;
+    const Eigen::Vector3f d = (p - plane.mean) / radius_m;
     const auto x = static_cast<double>(right.dot(d));
     const auto y = static_cast<double>(up.dot(d));
     const auto z = static_cast<double>(plane.normal.dot(d));
@@ -87,30 +54,10 @@ float scatter_about_quadric(const CellGrid& grid,
     b += z * row;
     squares += z * z;
   }
+  if (found < kFewest) return std::numeric_limits<float>::infinity();
   const double left = squares - b.dot(A.ldlt().solve(b));
-  return radius_m * static_cast<float>(std::sqrt(std::max(left, 0.0) /
-                                                 static_cast<double>(found.size() - kParameters)));
-}
-
-// How a point was seen.
-struct Ray {
-  Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();  // unit
-  float range_m = 0.0F;
-
-  // How much of a scatter along the ray is left along a normal. Of what is grazed the rest has
-  // other causes.
-  float steepness(const Eigen::Vector3f& normal) const {
-    constexpr float kGrazing = 0.1F;
-    return std::max(std::abs(normal.dot(direction)), kGrazing);
-  }
-};
-
-Ray ray_to(const PreparedCloud& cloud, std::size_t i) {
-  const std::size_t which = cloud.viewpoint_index.empty() ? 0 : cloud.viewpoint_index[i];
-  const Eigen::Vector3f sight = cloud.points[i] - cloud.viewpoints[which];
-  const float range_m = sight.norm();
-  if (!(range_m > 0.0F)) return {};
-  return {sight / range_m, range_m};
+  return radius_m * static_cast<float>(
+                        std::sqrt(std::max(left, 0.0) / static_cast<double>(found - kParameters)));
 }
 
 std::size_t bin_of(double first_range_m, float range_m) {
@@ -163,15 +110,17 @@ std::vector<float> scatter_of(const PreparedCloud& cloud,
                               const RunContext& context) {
   std::vector<float> sigma(sample.size());
   parallel_chunks(sample.size(), context.threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<CellGrid::Found> found;
+    Neighbourhood around;
     for (std::size_t k = begin; k < end; ++k) {
       if ((k - begin) % kBlock == 0) context.check("preprocess");
       const bool bent = shape == SurfaceShape::kBent;
-      const Ray ray = ray_to(cloud, sample[k]);
+      const SensorRay ray = ray_to(cloud, sample[k]);
       const float radius =
           bent ? static_cast<float>(radius_m) : noise_radius_m(radius_m, ray.range_m);
-      const PlaneFit plane = fit_plane(grid, cloud.points[sample[k]], radius, found);
-      sigma[k] = bent ? scatter_about_quadric(grid, plane, found, radius)
+      const Eigen::Vector3f& at = cloud.points[sample[k]];
+      around.gather(grid, at, radius);
+      const ScatterPlane plane = around.fit_plane(at, radius);
+      sigma[k] = bent ? scatter_about_quadric(around, plane, at, radius)
                       : plane.sigma_m / ray.steepness(plane.normal);
     }
   });
@@ -217,7 +166,7 @@ RangeNoise measure_range_noise(const PreparedCloud& cloud,
   RangeNoise noise;
   noise.first_range_m = 10.0 * cloud.resolution_m;
   if (cloud.viewpoints.empty()) return noise;
-  const CellGrid grid(cloud.points, radius_m / kCellsPerRadius);
+  const CellGrid grid(cloud.points, radius_m);
   std::vector<std::vector<float>> bins;
   for (const std::vector<std::uint32_t>& sample : sample_bins(cloud, noise.first_range_m)) {
     bins.push_back(scatter_of(cloud, grid, sample, radius_m, shape, context));
@@ -243,55 +192,11 @@ std::vector<float> range_weights(const PreparedCloud& cloud, const RangeNoise& n
   constexpr double kHalf = 0.3;  // of the resolution: an error of which a point counts for half
   const auto half = static_cast<float>(kHalf * cloud.resolution_m);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Ray ray = ray_to(cloud, i);
+    const SensorRay ray = ray_to(cloud, i);
     const float ratio = left * noise.at(ray.range_m) * ray.steepness(cloud.normals[i]) / half;
     weights[i] = 1.0F / (1.0F + ratio * ratio);
   }
   return weights;
-}
-
-void flatten_range_noise(PreparedCloud& cloud,
-                         const RangeNoise& noise,
-                         double radius_m,
-                         const RunContext& context) {
-  constexpr double kHarmless = 0.2;        // of the resolution: normals and descriptors bear it
-  constexpr float kRadiusPerNoise = 5.0F;  // wide enough to hold the whole slab of scattered points
-  constexpr double kMostWider = 3.0;       // times the radius
-  constexpr float kStillPlane = 2.0F;      // times the noise: beyond, the surface is no plane
-  constexpr float kNarrower = 0.7F;
-  const auto harmless = static_cast<float>(kHarmless * cloud.resolution_m);
-  if (noise.sigma_m.empty() || noise.sigma_m.back() <= harmless) return;
-
-  const CellGrid grid(cloud.points, radius_m / kCellsPerRadius);
-  PointCloud flat;
-  flat.points = cloud.points;
-  flat.normals = cloud.normals;
-  flat.origin = cloud.origin;
-  flat.viewpoints = cloud.viewpoints;
-  flat.viewpoint_index = cloud.viewpoint_index;
-  parallel_chunks(cloud.size(), context.threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<CellGrid::Found> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      if ((i - begin) % kBlock == 0) context.check("preprocess");
-      const Ray ray = ray_to(cloud, i);
-      const float sigma_m = noise.at(ray.range_m);
-      if (sigma_m <= harmless) continue;
-      const auto least = static_cast<float>(radius_m);
-      float radius =
-          std::clamp(kRadiusPerNoise * sigma_m, least, static_cast<float>(kMostWider * radius_m));
-      for (; radius >= least; radius *= kNarrower) {
-        const PlaneFit fit = fit_plane(grid, cloud.points[i], radius, found);
-        if (!(fit.sigma_m <= kStillPlane * sigma_m * ray.steepness(fit.normal))) continue;
-        flat.points[i] -= fit.normal * fit.normal.dot(cloud.points[i] - fit.mean);
-        flat.normals[i] = fit.normal.dot(cloud.normals[i]) < 0.0F ? -fit.normal : fit.normal;
-        break;
-      }
-    }
-  });
-  PointCloud thinned = thin(flat, cloud.resolution_m);
-  cloud.points = std::move(thinned.points);
-  cloud.normals = std::move(thinned.normals);
-  cloud.viewpoint_index = std::move(thinned.viewpoint_index);
 }
 
 }  // namespace landmarkdb

@@ -1,4 +1,4 @@
-// No include guard: the bodies of plane_sums.cpp and plane_pairs.cpp include this once for each
+// No include guard: the bodies of kernels (instruction_sets_body.hpp) include this once for each
 // instruction set, inside a namespace and under a target pragma, and undefine LANDMARKDB_INLINE at
 // their ends. `Floats` and `Ints` are vectors of kLanes numbers that the compiler lowers to what
 // the target has; the operations and their order are the same for all.

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "engine/base/parallel.hpp"
+#include "engine/cloud/voxel_grid.hpp"
+#include "engine/features/neighbourhood.hpp"
+#include "engine/features/range_noise.hpp"
+#include "engine/features/sensor_ray.hpp"
+
+namespace landmarkdb {
+
+namespace {
+
+constexpr std::size_t kCellsAtATime = 64;  // between two looks at the stop request
+
+// What is laid flat, and how.
+struct Flattening {
+  const PreparedCloud& cloud;
+  const RangeNoise& noise;
+  float harmless_m;  // noise that normals and descriptors bear
+  float least_radius_m;
+
+  float noise_at(std::size_t i) const { return noise.at(ray_to(cloud, i).range_m); }
+
+  // Wide enough to hold the whole slab of scattered points.
+  float radius_m(float sigma_m) const {
+    constexpr float kPerNoise = 5.0F;
+    constexpr float kMostWider = 3.0F;
+    return std::clamp(kPerNoise * sigma_m, least_radius_m, kMostWider * least_radius_m);
+  }
+};
+
+// The widest plane about a point that scatters no more than its noise makes it; one of infinite
+// scatter where there is none.
+ScatterPlane noisy_plane(const Flattening& task,
+                         const Neighbourhood& around,
+                         std::size_t i,
+                         float sigma_m) {
+  constexpr float kStillPlane = 2.0F;  // times the noise along the normal
+  constexpr float kNarrower = 0.7F;
+  const SensorRay ray = ray_to(task.cloud, i);
+  for (float radius = task.radius_m(sigma_m); radius >= task.least_radius_m; radius *= kNarrower) {
+    const ScatterPlane plane = around.fit_plane(task.cloud.points[i], radius);
+    if (plane.sigma_m <= kStillPlane * sigma_m * ray.steepness(plane.normal)) return plane;
+  }
+  return {};
+}
+
+// Lays the points of one cell flat; `gathered` is memory to work with.
+void flatten_cell(const Flattening& task,
+                  const CellGrid& grid,
+                  const CellGrid::Run& cell,
+                  Neighbourhood& gathered,
+                  PointCloud& flat) {
+  const auto points = static_cast<float>(cell.end - cell.begin);
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero();
+  float most_sigma_m = 0.0F;
+  for (std::uint32_t place = cell.begin; place < cell.end; ++place) {
+    centre += grid.point(place) / points;
+    most_sigma_m = std::max(most_sigma_m, task.noise_at(grid.order()[place]));
+  }
+  if (most_sigma_m <= task.harmless_m) return;
+  float spread = 0.0F;
+  for (std::uint32_t place = cell.begin; place < cell.end; ++place) {
+    spread = std::max(spread, (grid.point(place) - centre).norm());
+  }
+  gathered.gather(grid, centre, task.radius_m(most_sigma_m) + spread);
+  for (std::uint32_t place = cell.begin; place < cell.end; ++place) {
+    const std::size_t i = grid.order()[place];
+    const float sigma_m = task.noise_at(i);
+    if (sigma_m <= task.harmless_m) continue;
+    const ScatterPlane plane = noisy_plane(task, gathered, i, sigma_m);
+    if (!std::isfinite(plane.sigma_m)) continue;
+    const PreparedCloud& cloud = task.cloud;
+    flat.points[i] -= plane.normal * plane.normal.dot(cloud.points[i] - plane.mean);
+    flat.normals[i] = plane.normal.dot(cloud.normals[i]) < 0.0F ? -plane.normal : plane.normal;
+  }
+}
+
+}  // namespace
+
+void flatten_range_noise(PreparedCloud& cloud,
+                         const RangeNoise& noise,
+                         double radius_m,
+                         const RunContext& context) {
+  constexpr double kHarmless = 0.2;  // of the resolution
+  const Flattening task{cloud,
+                        noise,
+                        static_cast<float>(kHarmless * cloud.resolution_m),
+                        static_cast<float>(radius_m)};
+  if (noise.sigma_m.empty() || noise.sigma_m.back() <= task.harmless_m) return;
+
+  const CellGrid grid(cloud.points, radius_m);
+  PointCloud flat;
+  flat.points = cloud.points;
+  flat.normals = cloud.normals;
+  flat.origin = cloud.origin;
+  flat.viewpoints = cloud.viewpoints;
+  flat.viewpoint_index = cloud.viewpoint_index;
+  parallel_chunks(grid.cells(), context.threads, [&](std::size_t begin, std::size_t end) {
+    Neighbourhood gathered;
+    for (std::size_t i = begin; i < end; ++i) {
+      if ((i - begin) % kCellsAtATime == 0) context.check("preprocess");
+      flatten_cell(task, grid, grid.cell(i), gathered, flat);
+    }
+  });
+  PointCloud thinned = thin(flat, cloud.resolution_m);
+  cloud.points = std::move(thinned.points);
+  cloud.normals = std::move(thinned.normals);
+  cloud.viewpoint_index = std::move(thinned.viewpoint_index);
+}
+
+}  // namespace landmarkdb
