@@ -18,7 +18,7 @@
 #include <pcl/point_types.h>
 
 #include "bench/micro/shot_cloud.hpp"
-#include "engine/features/cell_grid.hpp"
+#include "engine/cloud/cell_grid.hpp"
 #include "engine/features/describe_shot.hpp"
 
 namespace {

@@ -8,13 +8,16 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/parallel.hpp"
+#include "engine/cloud/cell_grid.hpp"
+#include "engine/cloud/neighbourhood.hpp"
 #include "engine/cloud/orient_normals.hpp"
 
 namespace landmarkdb {
 namespace {
 
 constexpr std::size_t kFewestNeighbours = 5;  // the point itself is one of them
-constexpr std::size_t kStep = 1024;           // points between two looks at the stop token
+constexpr std::size_t kMostOfLine = 7;        // of which a far scanner's line has within the radius
+constexpr std::size_t kStep = 128;            // cells between two looks at the stop token
 
 struct PlaneFit {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
@@ -23,10 +26,20 @@ struct PlaneFit {
 };
 
 // The least-squares plane; no normal where the points are on one line or in one place.
+PlaneFit plane_of(const Eigen::Matrix3d& covariance) {
+  constexpr double kCollinear = 1e-6;  // below, float rounding alone could make the plane
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);
+  const Eigen::Vector3d& values = solver.eigenvalues();  // ascending
+  if (!(values[2] > 0.0) || !(values[1] > kCollinear * values[2])) return {};
+  const Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>();
+  if (!normal.allFinite()) return {};
+  return {normal, values[1] / values[2], values[0] / values[1]};
+}
+
 PlaneFit fit_plane(const std::vector<Eigen::Vector3f>& points,
                    const Eigen::Vector3f& centre,
                    std::span<const Neighbour> neighbours) {
-  constexpr double kCollinear = 1e-6;  // below, float rounding alone could make the plane
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   for (const Neighbour& neighbour : neighbours) {
@@ -36,14 +49,7 @@ PlaneFit fit_plane(const std::vector<Eigen::Vector3f>& points,
   }
   const double n = static_cast<double>(neighbours.size());
   mean /= n;
-  const Eigen::Matrix3d covariance = squares / n - mean * mean.transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(covariance);
-  const Eigen::Vector3d& values = solver.eigenvalues();  // ascending
-  if (!(values[2] > 0.0) || !(values[1] > kCollinear * values[2])) return {};
-  const Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>();
-  if (!normal.allFinite()) return {};
-  return {normal, values[1] / values[2], values[0] / values[1]};
+  return plane_of(squares / n - mean * mean.transpose());
 }
 
 // Far from a scanner its lines lie further apart than the radius reaches: the few neighbours are of
@@ -57,7 +63,6 @@ PlaneFit fit_wide_enough(const std::vector<Eigen::Vector3f>& points,
                          std::vector<Neighbour>& neighbours) {
   constexpr double kLine = 0.1;  // half a disc, as at an edge, has 0.28
   constexpr double kFlat = 0.05;
-  constexpr std::size_t kMostOfLine = 7;
   constexpr float kMostRadii = 4.0F;
   index.within_unordered(centre, radius, neighbours);
   const std::size_t around = neighbours.size();
@@ -73,18 +78,50 @@ PlaneFit fit_wide_enough(const std::vector<Eigen::Vector3f>& points,
   return first;
 }
 
+// Sums in single precision tell no thinner bands from lines: these are looked at in double.
+bool is_band(const PlaneFit& fit) {
+  constexpr double kLeastWidth = 1e-3;
+  return fit.width >= kLeastWidth;
+}
+
+// The planes about the points of one cell. Most have enough neighbours for one at once; the rest
+// are searched for.
+void fit_cell(PointCloud& cloud,
+              float radius,
+              const CellGrid& grid,
+              const CellGrid::Run& cell,
+              const SpatialIndex& index,
+              Neighbourhood& around,
+              std::vector<Neighbour>& neighbours) {
+  const CellGrid::Ball ball = grid.ball_around(cell);
+  around.gather(grid, ball.centre, radius + ball.radius_m);
+  for (std::uint32_t place = cell.begin; place < cell.end; ++place) {
+    const std::size_t i = grid.order()[place];
+    const Moments moments = around.moments(cloud.points[i], radius);
+    PlaneFit fit;
+    if (moments.count > static_cast<float>(kMostOfLine)) {
+      fit = plane_of(covariance_of(moments).cast<double>());
+    }
+    cloud.normals[i] =
+        is_band(fit)
+            ? fit.normal
+            : fit_wide_enough(cloud.points, cloud.points[i], radius, index, neighbours).normal;
+  }
+}
+
 void fit_planes(PointCloud& cloud,
                 double radius_m,
                 const SpatialIndex& index,
                 const RunContext& context) {
   const auto radius = static_cast<float>(radius_m);
   cloud.normals.assign(cloud.size(), Eigen::Vector3f::Zero());
-  parallel_chunks(cloud.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+  const CellGrid grid(cloud.points, radius_m);
+  parallel_chunks(grid.cells(), context.threads, [&](std::size_t begin, std::size_t end) {
+    Neighbourhood around;
     std::vector<Neighbour> neighbours;
     for (std::size_t i = begin; i < end; ++i) {
       if ((i - begin) % kStep == 0 && context.should_stop()) return;
-      cloud.normals[i] =
-          fit_wide_enough(cloud.points, cloud.points[i], radius, index, neighbours).normal;
+      fit_cell(cloud, radius, grid, grid.cell(i), index, around, neighbours);
     }
   });
   context.check("normals");

@@ -13,7 +13,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/parallel.hpp"
-#include "engine/features/cell_grid.hpp"
+#include "engine/cloud/cell_grid.hpp"
 #include "engine/features/check_cloud.hpp"
 #include "engine/features/shot_describer.hpp"
 

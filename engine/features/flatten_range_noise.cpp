@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/base/parallel.hpp"
+#include "engine/cloud/neighbourhood.hpp"
 #include "engine/cloud/voxel_grid.hpp"
-#include "engine/features/neighbourhood.hpp"
 #include "engine/features/range_noise.hpp"
 #include "engine/features/sensor_ray.hpp"
 
@@ -56,19 +56,13 @@ void flatten_cell(const Flattening& task,
                   const CellGrid::Run& cell,
                   Neighbourhood& gathered,
                   PointCloud& flat) {
-  const auto points = static_cast<float>(cell.end - cell.begin);
-  Eigen::Vector3f centre = Eigen::Vector3f::Zero();
   float most_sigma_m = 0.0F;
   for (std::uint32_t place = cell.begin; place < cell.end; ++place) {
-    centre += grid.point(place) / points;
     most_sigma_m = std::max(most_sigma_m, task.noise_at(grid.order()[place]));
   }
   if (most_sigma_m <= task.harmless_m) return;
-  float spread = 0.0F;
-  for (std::uint32_t place = cell.begin; place < cell.end; ++place) {
-    spread = std::max(spread, (grid.point(place) - centre).norm());
-  }
-  gathered.gather(grid, centre, task.radius_m(most_sigma_m) + spread);
+  const CellGrid::Ball ball = grid.ball_around(cell);
+  gathered.gather(grid, ball.centre, task.radius_m(most_sigma_m) + ball.radius_m);
   for (std::uint32_t place = cell.begin; place < cell.end; ++place) {
     const std::size_t i = grid.order()[place];
     const float sigma_m = task.noise_at(i);

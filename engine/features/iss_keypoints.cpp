@@ -7,7 +7,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "engine/base/parallel.hpp"
-#include "engine/features/cell_grid.hpp"
+#include "engine/cloud/cell_grid.hpp"
 
 namespace landmarkdb {
 namespace {

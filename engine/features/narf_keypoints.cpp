@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/error.hpp"
-#include "engine/features/cell_grid.hpp"
+#include "engine/cloud/cell_grid.hpp"
 #include "engine/features/pcl_narf.hpp"
 
 namespace landmarkdb {

@@ -11,14 +11,14 @@
 #include <Eigen/Geometry>
 
 #include "engine/base/parallel.hpp"
-#include "engine/features/cell_grid.hpp"
-#include "engine/features/neighbourhood.hpp"
+#include "engine/cloud/cell_grid.hpp"
+#include "engine/cloud/neighbourhood.hpp"
 #include "engine/features/sensor_ray.hpp"
 
 namespace landmarkdb {
 namespace {
 
-constexpr std::size_t kBlock = 256;      // points between two looks at the stop request
+constexpr std::size_t kBlock = 256;  // points between two looks at the stop request
 constexpr std::size_t kFewestOfBin = 50;
 constexpr double kMostWider = 3.0;  // times the normals' radius: the widest neighbourhood looked at
 constexpr double kFlattest = 0.25;  // share of a bin's points that are taken for planar

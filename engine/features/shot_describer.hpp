@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "engine/features/cell_grid.hpp"
+#include "engine/cloud/cell_grid.hpp"
 #include "engine/types/features.hpp"
 
 namespace landmarkdb {

@@ -6,8 +6,8 @@
 #include <Eigen/Eigenvalues>
 
 #include "engine/base/parallel.hpp"
+#include "engine/cloud/cell_grid.hpp"
 #include "engine/cloud/sort_by_key.hpp"
-#include "engine/features/cell_grid.hpp"
 
 namespace landmarkdb {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "engine/features/cell_grid.hpp"
-#include "engine/features/moment_sums.hpp"
+#include "engine/cloud/cell_grid.hpp"
+#include "engine/cloud/moment_sums.hpp"
 
 namespace landmarkdb {
 
@@ -19,6 +19,10 @@ struct ScatterPlane {
   float sigma_m = std::numeric_limits<float>::infinity();
 };
 
+// Of more than no points: their mean, from the centre, and how they scatter about it.
+Eigen::Vector3f mean_of(const Moments& moments);
+Eigen::Matrix3f covariance_of(const Moments& moments);
+
 // Points of a grid side by side, gathered once for the fits around all points of a spot. Belongs to
 // one thread; keeps its memory from spot to spot.
 class Neighbourhood {
@@ -26,7 +30,8 @@ class Neighbourhood {
   // All points of the grid nearer to `centre` than `radius_m`, and others near by.
   void gather(const CellGrid& grid, const Eigen::Vector3f& centre, float radius_m);
 
-  // About the points nearer to `at` than `radius_m`, all of which must have been gathered.
+  // Of the points nearer to `at` than `radius_m`, all of which must have been gathered.
+  Moments moments(const Eigen::Vector3f& at, float radius_m) const;
   ScatterPlane fit_plane(const Eigen::Vector3f& at, float radius_m) const;
 
   std::size_t size() const { return size_; }

@@ -44,6 +44,13 @@ class CellGrid {
   std::size_t cells() const { return keys_.size(); }
   Run cell(std::size_t i) const { return {start_[i], start_[i + 1]}; }
 
+  // Holds all points of some places.
+  struct Ball {
+    Eigen::Vector3f centre = Eigen::Vector3f::Zero();
+    float radius_m = 0.0F;
+  };
+  Ball ball_around(const Run& places) const;
+
   std::size_t size() const { return order_.size(); }
   std::span<const std::uint32_t> order() const { return order_; }
   std::span<const float> x() const { return x_; }  // by place

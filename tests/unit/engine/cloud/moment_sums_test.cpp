@@ -1,4 +1,4 @@
-#include "engine/features/moment_sums.hpp"
+#include "engine/cloud/moment_sums.hpp"
 
 #include <cstring>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "engine/features/neighbourhood.hpp"
+#include "engine/cloud/neighbourhood.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +23,18 @@ void pad(std::vector<float>& values) {
 
 }  // namespace
 
+Eigen::Vector3f mean_of(const Moments& moments) {
+  return Eigen::Vector3f(moments.sum[0], moments.sum[1], moments.sum[2]) / moments.count;
+}
+
+Eigen::Matrix3f covariance_of(const Moments& moments) {
+  const auto& p = moments.products;
+  Eigen::Matrix3f squares;
+  squares << p[0], p[1], p[2], p[1], p[3], p[4], p[2], p[4], p[5];
+  const Eigen::Vector3f mean = mean_of(moments);
+  return squares / moments.count - mean * mean.transpose();
+}
+
 void Neighbourhood::gather(const CellGrid& grid, const Eigen::Vector3f& centre, float radius_m) {
   grid.runs(centre, radius_m, runs_);
   x_.clear();
@@ -39,19 +51,18 @@ void Neighbourhood::gather(const CellGrid& grid, const Eigen::Vector3f& centre, 
   pad(z_);
 }
 
+Moments Neighbourhood::moments(const Eigen::Vector3f& at, float radius_m) const {
+  static const MomentSums add_up = moment_sums();
+  return add_up(x_.data(), y_.data(), z_.data(), x_.size(), at.data(), radius_m * radius_m);
+}
+
 ScatterPlane Neighbourhood::fit_plane(const Eigen::Vector3f& at, float radius_m) const {
   constexpr float kFewest = 6.0F;
-  static const MomentSums add_up = moment_sums();
-  const Moments moments =
-      add_up(x_.data(), y_.data(), z_.data(), x_.size(), at.data(), radius_m * radius_m);
+  const Moments moments = this->moments(at, radius_m);
   ScatterPlane plane;
   if (moments.count < kFewest) return plane;
-  const Eigen::Vector3f mean =
-      Eigen::Vector3f(moments.sum[0], moments.sum[1], moments.sum[2]) / moments.count;
-  const auto& p = moments.products;
-  Eigen::Matrix3f squares;
-  squares << p[0], p[1], p[2], p[1], p[3], p[4], p[2], p[4], p[5];
-  const Eigen::Matrix3f covariance = squares / moments.count - mean * mean.transpose();
+  const Eigen::Vector3f mean = mean_of(moments);
+  const Eigen::Matrix3f covariance = covariance_of(moments);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(covariance);
   plane.mean = at + mean;

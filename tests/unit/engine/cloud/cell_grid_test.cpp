@@ -1,4 +1,4 @@
-#include "engine/features/cell_grid.hpp"
+#include "engine/cloud/cell_grid.hpp"
 
 #include <algorithm>
 #include <array>
@@ -128,6 +128,29 @@ TEST(CellKeys, PackAndUnpackTheWholeRange) {
        {std::array<std::int64_t, 3>{0, 0, 0}, {kMax, 0, kMax}, {1, kMax, 2}, {kMax, kMax, kMax}}) {
     EXPECT_EQ(unpack_cell(pack_cell(cell[0], cell[1], cell[2])), cell);
   }
+}
+
+TEST(CellGrid, HasEachPointInOneCellAndInTheBallAroundIt) {
+  Random random(8);
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 500; ++i) {
+    points.push_back(
+        Eigen::Vector3d(random.uniform(), random.uniform(), random.uniform()).cast<float>());
+  }
+  const CellGrid grid(points, 0.2);
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < grid.cells(); ++i) {
+    const CellGrid::Run cell = grid.cell(i);
+    const CellGrid::Ball ball = grid.ball_around(cell);
+    EXPECT_EQ(cell.begin, seen);
+    EXPECT_LT(cell.begin, cell.end);
+    EXPECT_LE(ball.radius_m, 0.2F * std::sqrt(3.0F));
+    for (std::uint32_t place = cell.begin; place < cell.end; ++place) {
+      EXPECT_LE((grid.point(place) - ball.centre).norm(), ball.radius_m);
+    }
+    seen = cell.end;
+  }
+  EXPECT_EQ(seen, points.size());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "engine/features/neighbourhood.hpp"
+#include "engine/cloud/neighbourhood.hpp"
 
 #include <cmath>
 #include <vector>

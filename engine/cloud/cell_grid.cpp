@@ -1,4 +1,4 @@
-#include "engine/features/cell_grid.hpp"
+#include "engine/cloud/cell_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -172,6 +172,18 @@ void CellGrid::runs(const Eigen::Vector3f& query, float radius_m, std::vector<Ru
       if (run.begin < run.end) out.push_back(run);
     }
   }
+}
+
+CellGrid::Ball CellGrid::ball_around(const Run& places) const {
+  Ball ball;
+  const auto count = static_cast<float>(places.end - places.begin);
+  for (std::uint32_t place = places.begin; place < places.end; ++place) {
+    ball.centre += point(place) / count;
+  }
+  for (std::uint32_t place = places.begin; place < places.end; ++place) {
+    ball.radius_m = std::max(ball.radius_m, (point(place) - ball.centre).norm());
+  }
+  return ball;
 }
 
 void CellGrid::within(const Eigen::Vector3f& query, float radius_m, std::vector<Found>& out) const {

@@ -1,4 +1,4 @@
-#include "engine/features/moment_sums.hpp"
+#include "engine/cloud/moment_sums.hpp"
 
 #include <cstdint>
 
@@ -13,7 +13,7 @@ constexpr std::size_t kLanes = kMomentLanes;
 typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
 typedef std::int32_t Ints __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
-#define LANDMARKDB_KERNEL_BODY "engine/features/moment_sums_body.hpp"
+#define LANDMARKDB_KERNEL_BODY "engine/cloud/moment_sums_body.hpp"
 #include "engine/base/instruction_sets_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
 
 constexpr KernelSets<MomentSums> kSets LANDMARKDB_KERNEL_SETS(add_moments);
