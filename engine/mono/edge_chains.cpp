@@ -1,149 +1,135 @@
 #include "engine/mono/edge_chains.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <limits>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
 
+#include "engine/mono/edge_wishes.hpp"
 #include "engine/mono/faint_chains.hpp"
 
 namespace landmarkdb {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr float kLeastCosine = 0.5F;  // 60 degrees
-constexpr std::int32_t kReach = 2;    // pixels
-
-// A link that a point wishes for: its cost in the upper half, the other point in the lower, so that
-// the cheaper one is the smaller number (costs are not negative: their bits are in their order).
-using Wish = std::uint64_t;
-constexpr Wish kNoWish = std::numeric_limits<Wish>::max();
-struct Wishes {
-  std::array<Wish, 2> ways{kNoWish, kNoWish};  // ahead, behind
-
-  std::uint32_t ahead() const { return static_cast<std::uint32_t>(ways[0]); }
-  std::uint32_t behind() const { return static_cast<std::uint32_t>(ways[1]); }
-};
-static_assert(static_cast<std::uint32_t>(kNoWish) == kNone);
-
-// What point p thinks of a link to q, which lies `step` away. No branches: which way a point lies
-// is as good as chance.
-void consider(const EdgePoint& p, const Eigen::Vector2f& step, std::uint32_t q, Wishes& wishes) {
-  const float along = -p.normal.y() * step.x() + p.normal.x() * step.y();
-  const float aside = p.normal.dot(step);
-  const float cost = along * along + 2.0F * aside * aside;
-  constexpr float kLeastStep = 0.2F;  // below, the two are side by side
-  const Wish wish = (Wish{std::bit_cast<std::uint32_t>(cost)} << 32U) | q;
-  Wish& known = wishes.ways[along < 0.0F ? 1 : 0];
-  known = std::abs(along) > kLeastStep ? std::min(known, wish) : known;
-}
-
-void consider_both(const EdgeMap& map,
-                   std::uint32_t i,
-                   std::uint32_t j,
-                   std::vector<Wishes>& wishes) {
-  const EdgePoint &p = map.points[i], &q = map.points[j];
-  if (p.normal.dot(q.normal) < kLeastCosine) return;
-  const Eigen::Vector2f step = q.uv - p.uv;
-  consider(p, step, j, wishes[i]);
-  consider(q, -step, i, wishes[j]);
-}
-
-// The best link of every point either way. Every pair is looked at once, from the upper or left
-// one; each row below has a cursor that only moves on, so no map of the image is needed.
-std::vector<Wishes> find_wishes(const EdgeMap& map, const RunContext& run) {
-  std::vector<Wishes> wishes(map.points.size());
-  const std::size_t height = map.row_starts.size() - 1;
-  for (std::size_t y = 0; y < height; ++y) {
-    constexpr std::size_t kRowsBetweenChecks = 64;
-    if (y % kRowsBetweenChecks == 0) run.check("features");
-    std::array<std::uint32_t, kReach> cursors{}, ends{};
-    for (std::size_t below = 0; below < kReach && y + below + 1 < height; ++below) {
-      cursors[below] = map.row_starts[y + below + 1];
-      ends[below] = map.row_starts[y + below + 2];
-    }
-    for (std::uint32_t i = map.row_starts[y]; i < map.row_starts[y + 1]; ++i) {
-      const std::int32_t first = map.columns[i] - kReach, last = map.columns[i] + kReach;
-      for (std::uint32_t j = i + 1; j < map.row_starts[y + 1] && map.columns[j] <= last; ++j) {
-        consider_both(map, i, j, wishes);
-      }
-      for (std::size_t below = 0; below < kReach; ++below) {
-        const std::uint32_t end = ends[below];
-        std::uint32_t& at = cursors[below];
-        while (at < end && map.columns[at] < first) ++at;
-        for (std::uint32_t j = at; j < end && map.columns[j] <= last; ++j) {
-          consider_both(map, i, j, wishes);
-        }
-      }
-    }
-  }
-  return wishes;
-}
+constexpr std::uint32_t kNone = kNoEdgePoint;
 
 struct Links {
-  std::vector<std::uint32_t> next, previous;
+  std::vector<std::uint32_t> next;
+  std::vector<std::uint32_t> starts{};  // points without a previous one, ascending
 };
 
-Links link(const std::vector<Wishes>& wishes) {
-  Links links{std::vector<std::uint32_t>(wishes.size(), kNone),
-              std::vector<std::uint32_t>(wishes.size(), kNone)};
-  const auto join = [&](std::uint32_t from, std::uint32_t to) {
-    links.next[from] = to;
-    links.previous[to] = from;
-  };
+// Numbers that are chosen without a branch: which of them is as good as chance.
+class Chosen {
+ public:
+  explicit Chosen(std::size_t most)
+      : numbers_(std::make_unique_for_overwrite<std::uint32_t[]>(most + 1)) {}
+
+  void clear() { count_ = 0; }
+  void add_if(bool wanted, std::uint32_t number) {
+    numbers_[count_] = number;  // to be written over where it is not wanted
+    count_ += wanted ? 1 : 0;
+  }
+  std::span<const std::uint32_t> all() const { return {numbers_.get(), count_}; }
+
+ private:
+  std::unique_ptr<std::uint32_t[]> numbers_;
+  std::size_t count_ = 0;
+};
+
+Links link(const std::vector<LinkWishes>& wishes) {
+  const auto n = static_cast<std::uint32_t>(wishes.size());
+  Links links{std::vector<std::uint32_t>(n, kNone)};
+  std::vector<char> has_previous(n + 1, 0);  // one more: for links that lead nowhere
+  Chosen left_over(n);
   // First where both want each other, then what is still free on both sides.
-  for (std::uint32_t i = 0; i < wishes.size(); ++i) {
+  for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t to = wishes[i].ahead();
-    if (to != kNone && wishes[to].behind() == i) join(i, to);
+    const bool mutual = to != kNone && wishes[to != kNone ? to : i].behind() == i;
+    links.next[i] = mutual ? to : kNone;
+    has_previous[mutual ? to : n] = 1;
+    left_over.add_if(!mutual && to != kNone, i);
   }
-  for (std::uint32_t i = 0; i < wishes.size(); ++i) {
+  for (const std::uint32_t i : left_over.all()) {
     const std::uint32_t to = wishes[i].ahead();
-    if (to != kNone && links.next[i] == kNone && links.previous[to] == kNone) join(i, to);
+    if (std::exchange(has_previous[to], 1) == 0) links.next[i] = to;
   }
-  for (std::uint32_t i = 0; i < wishes.size(); ++i) {
+  left_over.clear();
+  for (std::uint32_t i = 0; i < n; ++i) left_over.add_if(has_previous[i] == 0, i);
+  for (const std::uint32_t i : left_over.all()) {
     const std::uint32_t from = wishes[i].behind();
-    if (from != kNone && links.previous[i] == kNone && links.next[from] == kNone) join(from, i);
+    if (from != kNone && links.next[from] == kNone) {
+      links.next[from] = i;
+    } else {
+      links.starts.push_back(i);
+    }
   }
   return links;
 }
 
 bool ends_meet(const EdgePoint& last, const EdgePoint& first) {
   constexpr float kNear = 3.0F;
-  return (first.uv - last.uv).norm() < kNear && last.normal.dot(first.normal) > kLeastCosine;
+  return (first.uv - last.uv).norm() < kNear && last.normal.dot(first.normal) > kLeastLinkCosine;
 }
+
+// Follows links from point to point, and collects the chains that are long enough.
+class ChainCollector {
+ public:
+  ChainCollector(const EdgeMap& map, Links links, std::size_t min_points)
+      : map_(map), links_(std::move(links)), min_points_(min_points) {}
+
+  EdgeChains collect() {
+    const auto n = static_cast<std::uint32_t>(map_.points.size());
+    std::size_t followed = 0;
+    for (const std::uint32_t i : links_.starts) followed += follow(i, kNone);
+    for (std::uint32_t i = 0; i < n && followed < n; ++i) {
+      if (links_.next[i] != kDone) followed += follow(i, i);  // what is left runs in circles
+    }
+    return std::move(result_);
+  }
+
+ private:
+  static constexpr std::uint32_t kDone = kNone - 1;  // where `next` was
+
+  // The points from `start` on until one leads to `end`: how many.
+  std::size_t follow(std::uint32_t start, std::uint32_t end) {
+    passed_.clear();
+    std::uint32_t at = start;
+    do {
+      passed_.push_back(at);
+      at = std::exchange(links_.next[at], kDone);
+    } while (at != end);
+    if (passed_.size() >= min_points_) add_chain(at == start);
+    return passed_.size();
+  }
+
+  // Of the points passed.
+  void add_chain(bool closed) {
+    EdgeChain chain{static_cast<std::uint32_t>(result_.points.size()), 0, false};
+    float strongest = 0.0F;
+    for (const std::uint32_t i : passed_) {
+      strongest = std::max(strongest, map_.contrasts[i]);
+      result_.points.push_back(map_.points[i]);
+    }
+    chain.end = static_cast<std::uint32_t>(result_.points.size());
+    chain.closed = closed || ends_meet(result_.points.back(), result_.points[chain.begin]);
+    result_.chains.push_back(chain);
+    if (strongest < map_.high_contrast) keep_straight_runs(result_, splitter_);
+  }
+
+  const EdgeMap& map_;
+  Links links_;
+  std::size_t min_points_;
+  std::vector<std::uint32_t> passed_;  // points, one after the other
+  ChainSplitter splitter_;
+  EdgeChains result_;
+};
 
 }  // namespace
 
 EdgeChains link_edges(const EdgeMap& map, std::size_t min_points, const RunContext& run) {
-  const Links links = link(find_wishes(map, run));
-  EdgeChains result;
-  std::vector<bool> used(map.points.size(), false);
-  const auto follow = [&](std::uint32_t start) {
-    EdgeChain chain{static_cast<std::uint32_t>(result.points.size()), 0, false};
-    float strongest = 0.0F;
-    std::uint32_t at = start;
-    for (; at != kNone && !used[at]; at = links.next[at]) {
-      used[at] = true;
-      strongest = std::max(strongest, map.contrasts[at]);
-      result.points.push_back(map.points[at]);
-    }
-    chain.end = static_cast<std::uint32_t>(result.points.size());
-    if (chain.end - chain.begin < min_points) {
-      result.points.resize(chain.begin);
-      return;
-    }
-    chain.closed = at == start || ends_meet(result.points.back(), result.points[chain.begin]);
-    result.chains.push_back(chain);
-    if (strongest < map.high_contrast) keep_straight_runs(result);
-  };
-  for (std::uint32_t i = 0; i < map.points.size(); ++i) {
-    if (links.previous[i] == kNone) follow(i);
-  }
-  for (std::uint32_t i = 0; i < map.points.size(); ++i) {
-    if (!used[i]) follow(i);  // what is left runs in circles
-  }
-  return result;
+  return ChainCollector(map, link(find_link_wishes(map, run)), min_points).collect();
 }
 
 }  // namespace landmarkdb

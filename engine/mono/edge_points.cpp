@@ -8,6 +8,7 @@
 #include <cstring>
 #include <span>
 
+#include "engine/mono/gradient_peaks.hpp"
 #include "engine/mono/gradient_rows.hpp"
 
 namespace landmarkdb {
@@ -15,52 +16,44 @@ namespace {
 
 constexpr double kLevelsPerUnit = 1.0 / kGradientPerLevel;
 
-// Offset of a parabola's top through (-1, before), (0, top), (1, after), within +-0.5.
-float top_of_parabola(float before, float top, float after) {
-  const float curve = before - 2.0F * top + after;
-  return curve < 0.0F ? std::clamp(0.5F * (before - after) / curve, -0.5F, 0.5F) : 0.0F;
-}
-
-float length_of(std::int32_t squared) { return std::sqrt(static_cast<float>(squared)); }
-
 // The edge points of row y, at the pixels `columns`.
 void append_points(EdgeMap& map,
                    const GradientRows& rows,
                    std::span<const std::int32_t> columns,
                    std::uint32_t y) {
-  const float contrast = static_cast<float>(rows.contrast_scale * kLevelsPerUnit);
-  std::size_t next = map.points.size();
+  const std::size_t next = map.points.size();
   map.points.resize(next + columns.size());
   map.contrasts.resize(next + columns.size());
   map.columns.insert(map.columns.end(), columns.begin(), columns.end());
-  for (const std::int32_t x : columns) {
-    const std::size_t at = static_cast<std::size_t>(x) + kRowMargin;
-    const float gx = rows.gx[at], gy = rows.gy[at];
-    const float length = length_of(rows.squared[at]);
-    const bool in_row = std::abs(gx) > std::abs(gy);
-    const std::int32_t before = in_row ? rows.squared[at - 1] : rows.above[at];
-    const std::int32_t after = in_row ? rows.squared[at + 1] : rows.below[at];
-    const float offset = top_of_parabola(length_of(before), length, length_of(after));
-    map.points[next] = {{static_cast<float>(x) + (in_row ? offset : 0.0F),
-                         static_cast<float>(y) + (in_row ? 0.0F : offset)},
-                        {gx / length, gy / length}};
-    map.contrasts[next++] = length * contrast;
-  }
+  place_peaks(rows, y, columns, map.points.data() + next, map.contrasts.data() + next);
+  const float contrast = static_cast<float>(rows.contrast_scale * kLevelsPerUnit);
+  for (std::size_t i = next; i < map.contrasts.size(); ++i) map.contrasts[i] *= contrast;
 }
 
-// Where flags are 1. They are looked at eight at a time: those past `width` are 0, eight of them.
+// The flags of 64 pixels, 1 or 0, as bits.
+std::uint64_t bits_of(const std::uint8_t* flags) {
+  std::uint64_t bits = 0;
+  for (unsigned byte = 0; byte < 8; ++byte) {
+    std::uint64_t eight = 0;
+    std::memcpy(&eight, flags + std::size_t{8} * byte, sizeof eight);
+    if constexpr (std::endian::native == std::endian::big) eight = __builtin_bswap64(eight);
+    constexpr std::uint64_t kGather = 0x0102040810204080;  // flag k to bit 56 + k
+    bits |= (eight * kGather >> 56U) << 8U * byte;
+  }
+  return bits;
+}
+
+// Where flags are 1. They are looked at 64 at a time: those past `width` are 0, up to 64 of them.
 void find_flagged(std::span<const std::uint8_t> flags,
                   std::uint32_t width,
                   std::vector<std::int32_t>& columns) {
-  columns.clear();
-  for (std::uint32_t x = 0; x < width; x += sizeof(std::uint64_t)) {
-    std::uint64_t eight = 0;
-    std::memcpy(&eight, flags.data() + x, sizeof eight);
-    if (eight == 0) continue;
-    if constexpr (std::endian::native == std::endian::big) eight = __builtin_bswap64(eight);
-    for (; eight != 0; eight &= eight - 1)
-      columns.push_back(static_cast<std::int32_t>(x) + std::countr_zero(eight) / 8);
+  columns.resize(width);
+  std::int32_t* next = columns.data();
+  for (std::uint32_t x = 0; x < width; x += 64) {
+    for (std::uint64_t bits = bits_of(flags.data() + x); bits != 0; bits &= bits - 1)
+      *next++ = static_cast<std::int32_t>(x) + std::countr_zero(bits);
   }
+  columns.resize(static_cast<std::size_t>(next - columns.data()));
 }
 
 // Keeps the points at or above a contrast. `rows_done` rows have their start.
@@ -81,6 +74,14 @@ void drop_below(EdgeMap& map, double contrast, std::size_t rows_done) {
   map.points.resize(kept);
   map.columns.resize(kept);
   map.contrasts.resize(kept);
+}
+
+constexpr std::size_t kPixelsAPoint = 8;  // at least, in most images
+
+void reserve(EdgeMap& map, std::size_t points) {
+  map.points.reserve(points);
+  map.columns.reserve(points);
+  map.contrasts.reserve(points);
 }
 
 double median_of(std::vector<float> values) {
@@ -141,9 +142,10 @@ EdgeMap find_edge_points(const GreyImage& image,
   choose_thresholds(map, image, options);
   map.row_starts.assign(std::size_t{image.height} + 1, 0);
   if (image.width == 0 || image.height == 0) return map;
+  reserve(map, std::min(options.max_points, image.pixels.size() / kPixelsAPoint));
   GradientFilter filter(image, options.smooth);
   double floor = map.low_contrast;
-  std::vector<std::uint8_t> flags(filter.row_size() + sizeof(std::uint64_t), 0);
+  std::vector<std::uint8_t> flags(std::size_t{image.width} + 64, 0);
   std::vector<std::int32_t> columns;
   for (std::uint32_t y = 0; y < image.height; ++y) {
     constexpr std::uint32_t kRowsBetweenChecks = 64;

@@ -1,36 +1,35 @@
 #include "engine/mono/faint_chains.hpp"
 
-#include <vector>
-
-#include "engine/mono/split_chain.hpp"
+#include <algorithm>
+#include <cstddef>
+#include <span>
 
 namespace landmarkdb {
 
-void keep_straight_runs(EdgeChains& chains) {
+void keep_straight_runs(EdgeChains& chains, ChainSplitter& splitter) {
   // Faint edges are some 0.4 px off; waves of light 40 px long and shorter bend more than that.
   constexpr double kStraight_px = 1.5;
   constexpr float kShortest_px = 12.0F;
-  const EdgeChain chain = chains.chains.back();
+  const std::uint32_t begin = chains.chains.back().begin;
   chains.chains.pop_back();
-  const std::vector<EdgePoint> points(chains.points.begin() + chain.begin, chains.points.end());
-  chains.points.resize(chain.begin);
-  const std::vector<std::size_t> splits = split_chain(points, kStraight_px);
+  const std::span<EdgePoint> points = std::span(chains.points).subspan(begin);
+  const std::span<const std::size_t> splits = splitter.split(points, kStraight_px);
+  std::size_t kept = 0;  // moved to the front, before what is yet to be looked at
   bool goes_on = false;
   for (std::size_t i = 0; i + 1 < splits.size(); ++i) {
-    const auto first = points.begin() + static_cast<std::ptrdiff_t>(splits[i]);
-    const auto last = points.begin() + static_cast<std::ptrdiff_t>(splits[i + 1]);
-    const bool straight = (last->uv - first->uv).norm() >= kShortest_px;
+    const std::size_t first = splits[i], last = splits[i + 1];
+    const bool straight = (points[last].uv - points[first].uv).norm() >= kShortest_px;
     if (straight) {
-      if (!goes_on) {
-        const auto at = static_cast<std::uint32_t>(chains.points.size());
-        chains.chains.push_back({at, at, false});
-        chains.points.push_back(*first);
-      }
-      chains.points.insert(chains.points.end(), first + 1, last + 1);
-      chains.chains.back().end = static_cast<std::uint32_t>(chains.points.size());
+      const auto at = begin + static_cast<std::uint32_t>(kept);
+      if (!goes_on) chains.chains.push_back({at, at, false});
+      const std::size_t from = goes_on ? first + 1 : first;
+      std::copy(&points[from], &points[last] + 1, &points[kept]);
+      kept += last + 1 - from;
+      chains.chains.back().end = begin + static_cast<std::uint32_t>(kept);
     }
     goes_on = straight;
   }
+  chains.points.resize(begin + kept);
 }
 
 }  // namespace landmarkdb

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -18,7 +20,8 @@ constexpr double kLeastSine =
 // Which lines pass near a place: buckets of cells, each line entered where it passes.
 class LineGrid {
  public:
-  LineGrid(std::span<const FittedLine> lines, double cell_px) : cell_px_(cell_px) {
+  LineGrid(std::span<const FittedLine> lines, double cell_px)
+      : cell_px_(cell_px), met_(lines.size(), 0) {
     Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
     for (const FittedLine& line : lines) {
       low = low.cwiseMin(line.start()).cwiseMin(line.end());
@@ -28,36 +31,54 @@ class LineGrid {
     origin_ = low;
     columns_ = static_cast<std::int64_t>((high - low).x() / cell_px) + 1;
     rows_ = static_cast<std::int64_t>((high - low).y() / cell_px) + 1;
-    cells_.resize(static_cast<std::size_t>(columns_ * rows_));
-    for (std::uint32_t i = 0; i < lines.size(); ++i) {
-      const double step = cell_px / 2.0;
-      for (double along = lines[i].from;; along += step) {
-        std::vector<std::uint32_t>& cell =
-            cells_[index_of(lines[i].at(std::min(along, lines[i].to)))];
-        if (cell.empty() || cell.back() != i) cell.push_back(i);
-        if (along >= lines[i].to) break;
-      }
-    }
+    fill(lines);
   }
 
-  // Lines within a cell's size of the place, each once, ascending.
-  void near(const Eigen::Vector2d& place, std::vector<std::uint32_t>& found) const {
+  // Lines within a cell's size of the place, each once.
+  void near(const Eigen::Vector2d& place, std::vector<std::uint32_t>& found) {
     found.clear();
+    ++calls_;
     const auto [column, row] = cell_of(place);
     for (std::int64_t r = std::max<std::int64_t>(0, row - 1); r <= std::min(rows_ - 1, row + 1);
          ++r) {
       for (std::int64_t c = std::max<std::int64_t>(0, column - 1);
            c <= std::min(columns_ - 1, column + 1);
            ++c) {
-        const auto& cell = cells_[static_cast<std::size_t>(r * columns_ + c)];
-        found.insert(found.end(), cell.begin(), cell.end());
+        const auto cell = static_cast<std::size_t>(r * columns_ + c);
+        for (std::uint32_t i = starts_[cell]; i < starts_[cell + 1]; ++i) {
+          if (std::exchange(met_[lines_[i]], calls_) != calls_) found.push_back(lines_[i]);
+        }
       }
     }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
   }
 
  private:
+  void fill(std::span<const FittedLine> lines) {
+    struct Entry {
+      std::uint32_t cell, line;
+    };
+    std::vector<Entry> entries;
+    starts_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+    for (std::uint32_t i = 0; i < lines.size(); ++i) {
+      const double step = cell_px_ / 2.0;
+      for (double along = lines[i].from;; along += step) {
+        const auto cell =
+            static_cast<std::uint32_t>(index_of(lines[i].at(std::min(along, lines[i].to))));
+        const bool known =
+            !entries.empty() && entries.back().line == i && entries.back().cell == cell;
+        if (!known) {
+          entries.push_back({cell, i});
+          ++starts_[cell + 1];
+        }
+        if (along >= lines[i].to) break;
+      }
+    }
+    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+    lines_.resize(entries.size());
+    std::vector<std::uint32_t> next = starts_;
+    for (const Entry& entry : entries) lines_[next[entry.cell]++] = entry.line;
+  }
+
   std::pair<std::int64_t, std::int64_t> cell_of(const Eigen::Vector2d& place) const {
     const Eigen::Vector2d cell = (place - origin_) / cell_px_;
     return {static_cast<std::int64_t>(std::floor(cell.x())),
@@ -72,7 +93,10 @@ class LineGrid {
   double cell_px_;
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
   std::int64_t columns_ = 0, rows_ = 0;
-  std::vector<std::vector<std::uint32_t>> cells_;
+  std::vector<std::uint32_t> starts_;  // of each cell in lines_, and their end
+  std::vector<std::uint32_t> lines_;   // by cell
+  std::uint32_t calls_ = 0;
+  std::vector<std::uint32_t> met_;  // by line: the last call that met it
 };
 
 struct Crossing {
@@ -92,7 +116,7 @@ std::optional<double> crossing_along(const FittedLine& a, const FittedLine& b, d
 std::vector<Crossing> find_crossings(std::span<const FittedLine> lines,
                                      double reach_px,
                                      const RunContext& run) {
-  const LineGrid grid(lines, 2.0 * reach_px);
+  LineGrid grid(lines, 2.0 * reach_px);
   std::vector<Crossing> crossings;
   std::vector<std::uint32_t> near;
   for (std::uint32_t a = 0; a < lines.size(); ++a) {

@@ -18,6 +18,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 struct Piece {
   std::size_t begin = 0, end = 0;  // points [begin, end)
   FittedLine line{};
+  bool moved = false;  // an end, since the line was fitted
 };
 
 // Where two neighbours cross is a better place to split than where the chain is farthest out.
@@ -41,8 +42,9 @@ void move_splits_to_crossings(std::span<const EdgePoint> points, std::vector<Pie
         best = k;
       }
     }
-    a.end = best;
-    b.begin = best;
+    if (best == a.end) continue;
+    a.end = b.begin = best;
+    a.moved = b.moved = true;
   }
 }
 
@@ -52,9 +54,10 @@ std::span<const EdgePoint> points_of(std::span<const EdgePoint> points,
   return points.subspan(begin, end - begin);
 }
 
-std::vector<Piece> cut_into_pieces(std::span<const EdgePoint> points, double tolerance_px) {
-  const std::vector<std::size_t> splits = split_chain(points, tolerance_px);
+std::vector<Piece> cut_into_pieces(std::span<const EdgePoint> points,
+                                   std::span<const std::size_t> splits) {
   std::vector<Piece> pieces;
+  pieces.reserve(splits.size());
   for (std::size_t i = 0; i + 1 < splits.size(); ++i) {
     const std::size_t end = i + 2 == splits.size() ? points.size() : splits[i + 1];
     pieces.push_back({splits[i], end, fit_line(points_of(points, splits[i], end))});
@@ -190,7 +193,7 @@ class ChainFitter {
       rotated = started_at_corner(chain);
       chain = rotated;
     }
-    std::vector<Piece> pieces = cut_into_pieces(chain, options_.split_px);
+    std::vector<Piece> pieces = cut_into_pieces(chain, splitter_.split(chain, options_.split_px));
     std::vector<bool> taken(pieces.size(), false);
     const std::vector<Run> runs = curved_runs(chain, pieces);
     for (const Run& run : runs) fit_arc(chain, pieces, run, taken);
@@ -201,7 +204,7 @@ class ChainFitter {
     }
     move_splits_to_crossings(chain, pieces);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (!taken[i]) add_line(points_of(chain, pieces[i].begin, pieces[i].end));
+      if (!taken[i]) add_line(chain, pieces[i]);
     }
   }
 
@@ -210,10 +213,11 @@ class ChainFitter {
     const ClosedContour contour = area_of(chain);
     constexpr double kLeastArea_px2 = 30.0;
     if (contour.area_px2 < kLeastArea_px2) return false;
-    const std::vector<Piece> pieces = cut_into_pieces(chain, options_.split_px);
-    if (pieces.size() >= 4) {
-      const std::optional<EllipseFit> fit =
-          try_ellipse(chain, cost_of_lines(pieces, options_.noise), options_);
+    constexpr std::size_t kFewestPieces = 4;
+    const std::span<const std::size_t> splits = splitter_.split(chain, options_.split_px);
+    if (splits.size() > kFewestPieces) {
+      const double cost = cost_of_lines(cut_into_pieces(chain, splits), options_.noise);
+      const std::optional<EllipseFit> fit = try_ellipse(chain, cost, options_);
       constexpr double kWhole = 300.0 * kDegree;
       if (fit && fit->ellipse.arc_rad > kWhole) {
         fits_.ellipses.push_back({*fit, true});
@@ -245,10 +249,11 @@ class ChainFitter {
     }
   }
 
-  void add_line(std::span<const EdgePoint> points) {
+  void add_line(std::span<const EdgePoint> chain, const Piece& piece) {
     constexpr double kLargestRms_px = 0.75;  // half of what a piece may bend
     constexpr double kLeastShare = 0.5;      // of the points, on the line
-    const FittedLine line = fit_line(points);
+    const std::span<const EdgePoint> points = points_of(chain, piece.begin, piece.end);
+    const FittedLine line = piece.moved ? fit_line(points) : piece.line;
     if (line.length() < options_.min_length_px || line.rms_px > kLargestRms_px ||
         static_cast<double>(line.points) < kLeastShare * static_cast<double>(points.size())) {
       return;
@@ -264,6 +269,7 @@ class ChainFitter {
 
   const ChainFitOptions& options_;
   ChainFits& fits_;
+  ChainSplitter splitter_;
 };
 
 void ChainFitter::add_inflexion(std::span<const EdgePoint> chain,

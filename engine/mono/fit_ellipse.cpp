@@ -35,6 +35,14 @@ std::optional<Frame> frame_of(std::span<const EdgePoint> points) {
   return frame;
 }
 
+// The lower half of the sum of v v^T.
+template <typename Vector, typename Matrix>
+void add_square(const Vector& v, Matrix& sum) {
+  for (Eigen::Index column = 0; column < v.size(); ++column) {
+    for (Eigen::Index row = column; row < v.size(); ++row) sum(row, column) += v[row] * v[column];
+  }
+}
+
 std::optional<Vector6d> fit_conic(std::span<const EdgePoint> points,
                                   const Frame& frame,
                                   const EdgeNoise& noise) {
@@ -54,11 +62,13 @@ std::optional<Vector6d> fit_conic(std::span<const EdgePoint> points,
     gy << 2.0 * y, x, 0.0, 1.0, 0.0;
     v *= position;
     d *= direction;
-    S.noalias() += v * v.transpose();
-    S.noalias() += d * d.transpose();
-    T.noalias() += gx * gx.transpose();
-    T.noalias() += gy * gy.transpose();
+    add_square(v, S);
+    add_square(d, S);
+    add_square(gx, T);
+    add_square(gy, T);
   }
+  S.triangularView<Eigen::StrictlyUpper>() = S.transpose();
+  T.triangularView<Eigen::StrictlyUpper>() = T.transpose();
   // F enters S only: eliminate it.
   const Vector5d s = S.block<5, 1>(0, 5);
   const Matrix5d reduced = S.block<5, 5>(0, 0) - s * s.transpose() / S(5, 5);

@@ -29,7 +29,8 @@ void smooth_across(const std::uint8_t* __restrict in,
   }
 }
 
-// The sum of weights is 256; 16 of it stay as fractions of a grey level.
+// The sum of weights is 256; 16 of it stay as fractions of a grey level. Sums are at most 16 *
+// 4080: 16 bits are enough.
 LANDMARKDB_LONG_VECTORS
 void smooth_down(const std::uint16_t* __restrict a,
                  const std::uint16_t* __restrict b,
@@ -39,9 +40,8 @@ void smooth_down(const std::uint16_t* __restrict a,
                  std::int16_t* __restrict out,
                  std::size_t n) {
   for (std::size_t i = 2; i + 2 < n; ++i) {
-    const std::uint32_t sum =
-        std::uint32_t{a[i]} + e[i] + 4U * (std::uint32_t{b[i]} + d[i]) + 6U * c[i];
-    out[i] = static_cast<std::int16_t>((sum + 8U) >> 4U);
+    const auto sum = static_cast<std::uint16_t>(8 + a[i] + e[i] + 4 * (b[i] + d[i]) + 6 * c[i]);
+    out[i] = static_cast<std::int16_t>(sum >> 4);
   }
 }
 
@@ -54,12 +54,14 @@ void differentiate(const std::int16_t* __restrict above,
                    std::int32_t* __restrict squared,
                    std::size_t n) {
   for (std::size_t i = 3; i + 3 < n; ++i) {
-    const int dx = (above[i + 1] - above[i - 1]) + 2 * (row[i + 1] - row[i - 1]) +
-                   (below[i + 1] - below[i - 1]);
-    const int dy =
-        (below[i - 1] - above[i - 1]) + 2 * (below[i] - above[i]) + (below[i + 1] - above[i + 1]);
-    gx[i] = static_cast<std::int16_t>(dx);
-    gy[i] = static_cast<std::int16_t>(dy);
+    // At most 4 * 4080: 16 bits are enough, and twice as many of them are worked out at once.
+    const auto dx =
+        static_cast<std::int16_t>((above[i + 1] - above[i - 1]) + 2 * (row[i + 1] - row[i - 1]) +
+                                  (below[i + 1] - below[i - 1]));
+    const auto dy = static_cast<std::int16_t>(
+        (below[i - 1] - above[i - 1]) + 2 * (below[i] - above[i]) + (below[i + 1] - above[i + 1]));
+    gx[i] = dx;
+    gy[i] = dy;
     squared[i] = dx * dx + dy * dy;
   }
 }

@@ -19,29 +19,28 @@ std::pair<std::size_t, double> farthest(std::span<const EdgePoint> points,
     const Eigen::Vector2f w = points[i].uv - from;
     const float away =
         length > 1e-3F ? std::abs(along.x() * w.y() - along.y() * w.x()) / length : w.norm();
-    if (away > most) {
-      most = away;
-      worst = i;
-    }
+    worst = away > most ? i : worst;
+    most = away > most ? away : most;
   }
   return {worst, most};
 }
 
 }  // namespace
 
-std::vector<std::size_t> split_chain(std::span<const EdgePoint> points, double tolerance_px) {
-  std::vector<std::size_t> splits{0};
-  std::vector<std::size_t> open{points.size() - 1};  // right ends still to be reached
-  while (!open.empty()) {
-    const auto [worst, away] = farthest(points, splits.back(), open.back());
+std::span<const std::size_t> ChainSplitter::split(std::span<const EdgePoint> points,
+                                                  double tolerance_px) {
+  splits_.assign(1, 0);
+  open_.assign(1, points.size() - 1);
+  while (!open_.empty()) {
+    const auto [worst, away] = farthest(points, splits_.back(), open_.back());
     if (away > tolerance_px) {
-      open.push_back(worst);
+      open_.push_back(worst);
     } else {
-      splits.push_back(open.back());
-      open.pop_back();
+      splits_.push_back(open_.back());
+      open_.pop_back();
     }
   }
-  return splits;
+  return splits_;
 }
 
 }  // namespace landmarkdb

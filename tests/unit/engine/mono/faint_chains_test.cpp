@@ -35,7 +35,8 @@ TEST(KeepStraightRuns, KeepsAStraightChainWhole) {
   std::vector<EdgePoint> line;
   for (int i = 0; i < 30; ++i) line.push_back(point(i, 20.0 + 0.4 * (i % 3 - 1)));
   EdgeChains chains = after_another(line);
-  keep_straight_runs(chains);
+  ChainSplitter splitter;
+  keep_straight_runs(chains, splitter);
   expect_first_untouched(chains);
   ASSERT_EQ(chains.chains.size(), 2U);
   EXPECT_EQ(chains.chains[1].begin, 15U);
@@ -48,7 +49,8 @@ TEST(KeepStraightRuns, KeepsACornerOfTwoSidesInOneChain) {
   for (int i = 0; i < 20; ++i) corner.push_back(point(i, 0.0));
   for (int i = 0; i < 20; ++i) corner.push_back(point(20.0, i));
   EdgeChains chains = after_another(corner);
-  keep_straight_runs(chains);
+  ChainSplitter splitter;
+  keep_straight_runs(chains, splitter);
   ASSERT_EQ(chains.chains.size(), 2U);
   EXPECT_EQ(chains.chains[1].end - chains.chains[1].begin, 40U) << "each point once";
 }
@@ -57,7 +59,8 @@ TEST(KeepStraightRuns, DropsAWavyChainAndLeavesTheOthers) {
   std::vector<EdgePoint> wave;
   for (int i = 0; i < 60; ++i) wave.push_back(point(i, 3.0 * std::sin(0.4 * i)));
   EdgeChains chains = after_another(wave);
-  keep_straight_runs(chains);
+  ChainSplitter splitter;
+  keep_straight_runs(chains, splitter);
   expect_first_untouched(chains);
   EXPECT_EQ(chains.chains.size(), 1U);
   EXPECT_EQ(chains.points.size(), 15U);
@@ -69,7 +72,8 @@ TEST(KeepStraightRuns, KeepsWhatIsStraightOnBothSidesOfABend) {
   for (int i = 1; i < 8; ++i) points.push_back(point(20.0 + 4.0 * (i % 2), 2.0 * i));
   for (int i = 0; i < 20; ++i) points.push_back(point(20.0 + i, 16.0));
   EdgeChains chains = after_another(points);
-  keep_straight_runs(chains);
+  ChainSplitter splitter;
+  keep_straight_runs(chains, splitter);
   ASSERT_EQ(chains.chains.size(), 3U);
   EXPECT_EQ(chains.chains[2].begin, chains.chains[1].end);
   EXPECT_EQ(chains.chains[2].end, chains.points.size());
