@@ -66,7 +66,7 @@ class FourIndex {
   // index does not hold what is likely to be seen of it.
   bool often_flat(std::uint32_t model) const { return often_flat_[model]; }
 
-  static constexpr std::size_t kLanes = 8;
+  static constexpr std::size_t kLanes = 16;
 
  private:
   std::array<Group, 512> groups_{};

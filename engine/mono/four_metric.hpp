@@ -26,6 +26,19 @@ struct FourHit {
   float size = 0.0F;             // w^H G w
 };
 
+// Sets passes[i] to 255 where |w^T G w|^2 of four i is below `bound` times the square of w^H G w,
+// else to 0. `metric` has the six elements as FourIndex::metric has them; `count` is a multiple of
+// FourIndex::kLanes.
+using FourKernel = void (*)(const float* const* metric,
+                            std::size_t count,
+                            const FourProducts& products,
+                            float bound,
+                            std::uint8_t* passes);
+
+// The kernel of one instruction set by name, "sse2", "avx2" or "avx512"; null where the machine
+// lacks it. All of them give the same bytes.
+FourKernel four_kernel(const char* instruction_set);
+
 // Appends the fours of a group whose |w^T G w| is below `tolerance` of w^H G w.
 void test_fours(const FourIndex& index,
                 const FourIndex::Group& group,

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 #include <vector>
 
-#include <Eigen/LU>
-
 #include "engine/mono/four_metric.hpp"
+#include "engine/mono/four_pose.hpp"
+#include "engine/mono/four_screen.hpp"
 #include "engine/mono/line_of_sight.hpp"
 #include "engine/mono/quad_code.hpp"
 
@@ -17,7 +16,6 @@ namespace landmarkdb {
 namespace {
 
 using Ids = std::array<std::uint16_t, 4>;
-using Four = std::array<Eigen::Vector2d, 4>;
 
 // Of |w^T G w| against w^H G w, before perspective is corrected. On generated scenes (100 models,
 // seed 11, 0.5 to 1.2 m, 1 px of noise) nine in ten true fours are below.
@@ -26,7 +24,7 @@ constexpr float kTolerance = 0.15F;
 // one below 1.05; a tenth of the others.
 constexpr double kMostSigmas = 1.6;
 constexpr double kNoise_px = 1.0;  // of a feature: the search's, whatever the features say
-// Pairs tested in one go, some nanoseconds each: at first few, as often one of the first fours is
+// Pairs tested in one go, a nanosecond each: at first few, as often one of the first fours is
 // the model's, then twice as many each time; and in a whole search.
 constexpr std::size_t kFirstBatch = 150'000, kMostBatch = 2'400'000;
 constexpr std::size_t kMostTests = 24'000'000;
@@ -47,79 +45,12 @@ Ids in_order(const ImageFour& four, std::uint8_t order) {
   return {four.ids[places[0]], four.ids[places[1]], four.ids[places[2]], four.ids[places[3]]};
 }
 
-struct Turned {
-  Eigen::Matrix3d Q;  // turns the camera towards the four
-  Four rays;
-};
-
-Turned turned_to(const ImageView& image, const Ids& ids) {
-  Four rays;
+TurnedFour turned_to(const ImageView& image, const Ids& ids) {
+  std::array<Eigen::Vector2d, 4> rays;
   for (std::size_t k = 0; k < 4; ++k) rays[k] = image[ids[k]].xy / image.focal_px();
   const Eigen::Matrix3d Q = turn_into_sight(rays);
   return {Q, turned(Q, rays)};
 }
-
-// A four of a model as an image's four shows it: scaled orthography about the first point, in the
-// camera that is turned to it, with perspective correction (DeMenthon & Davis 1995).
-class FourPose {
- public:
-  FourPose(const SearchModel& search, const Ids& model, const Turned& seen)
-      : seen_(seen), origin_(search.points[model[0]].xyz) {
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      E_.row(k) = search.points[model[static_cast<std::size_t>(k) + 1]].xyz - origin_;
-    }
-    inverse_ = E_.inverse();
-    fit(Eigen::Vector3d::Ones());
-  }
-
-  // Where the camera is, in the object frame; of any length.
-  Eigen::Vector3d to_camera() const { return -L_.col(0).cross(L_.col(1)); }
-
-  // One round of perspective correction, with the depths that the map has now.
-  void correct() {
-    const double size = std::sqrt(0.5 * L_.squaredNorm());  // 1 / s
-    fit(Eigen::Vector3d::Ones() + size * (E_ * -to_camera().normalized()));
-  }
-
-  // How far the map's two rows are from orthogonal and equally long, in sigmas of what noise of
-  // `sigma` (of a ray's coordinate) makes of that.
-  double sigmas(double sigma) const {
-    const double across = L_.col(0).squaredNorm() - L_.col(1).squaredNorm();
-    const double off = std::hypot(across, 2.0 * L_.col(0).dot(L_.col(1)));
-    return off / (2.0 * std::numbers::sqrt2 * sigma * (inverse_.transpose() * L_).norm());
-  }
-
-  // The nearest rotation to the map's rows; false where there is none.
-  bool pose(RigidPose& result) const {
-    const Eigen::Matrix2d M = L_.transpose() * L_;
-    const double root = std::sqrt(std::max(0.0, M.determinant()));
-    const double trace = std::sqrt(M.trace() + 2.0 * root);  // of M^(1/2)
-    if (!(root > 0.0) || !std::isfinite(trace)) return false;
-    Eigen::Matrix2d G = M;
-    G.diagonal().array() += root;
-    const Eigen::Matrix<double, 2, 3> rows = trace * G.inverse() * L_.transpose();
-    Eigen::Matrix3d R;
-    R << rows, rows.row(0).cross(rows.row(1));
-    const Eigen::Vector3d t = 2.0 / trace * seen_.rays[0].homogeneous() - R * origin_;
-    result = {seen_.Q.transpose() * R, seen_.Q.transpose() * t};
-    return result.t.allFinite();
-  }
-
- private:
-  // `nearer`: 1 + e_i, by how much points 1 to 3 are further away than point 0.
-  void fit(const Eigen::Vector3d& nearer) {
-    Eigen::Matrix<double, 3, 2> w;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      w.row(k) = seen_.rays[static_cast<std::size_t>(k) + 1] * nearer(k) - seen_.rays[0];
-    }
-    L_ = inverse_ * w;
-  }
-
-  const Turned& seen_;
-  Eigen::Vector3d origin_;
-  Eigen::Matrix3d E_, inverse_;
-  Eigen::Matrix<double, 3, 2> L_;  // the first two rows of the rotation over the depth
-};
 
 class FourSearch {
  public:
@@ -140,7 +71,9 @@ class FourSearch {
     trials.clear();
     const std::size_t end = tests_ + batch_;
     batch_ = std::min(2 * batch_, kMostBatch);
-    while (next_ < fours_.size() && tests_ < end) test(next_++, trials);
+    questions_.clear();
+    while (next_ < fours_.size() && tests_ < end) ask(next_++);
+    answer(trials);
     std::sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
       return std::tie(a.sigmas, a.model_four, a.image_four, a.order) <
              std::tie(b.sigmas, b.model_four, b.image_four, b.order);
@@ -150,8 +83,8 @@ class FourSearch {
 
   bool pose_of(const Trial& trial, RigidPose& pose) const {
     constexpr int kRounds = 3;
-    const Turned seen = turned_to(image_, in_order(fours_[trial.image_four], trial.order));
-    FourPose solver(models_[model_of(trial)], index_[trial.model_four].ids, seen);
+    const TurnedFour seen = turned_to(image_, in_order(fours_[trial.image_four], trial.order));
+    FourPose solver(models_[model_of(trial)].points, index_[trial.model_four].ids, seen);
     for (int round = 0; round < kRounds; ++round) solver.correct();
     return solver.pose(pose);
   }
@@ -163,7 +96,17 @@ class FourSearch {
  private:
   static constexpr double kDepthSlack = 1.5;  // the depth is the pool's to judge
 
-  void test(std::size_t number, std::vector<Trial>& trials) {
+  // A four of the image in one order, and the models' fours that it may be.
+  struct Question {
+    FourIndex::Group group;
+    std::uint32_t image_four = 0;
+    std::uint8_t order = 0;
+    std::uint8_t links = 0;
+    TurnedFour seen;
+    FourProducts products;
+  };
+
+  void ask(std::size_t number) {
     const ImageFour& four = fours_[number];
     const std::span<const std::array<std::uint8_t, 4>> orders = orders_of(four.shape);
     for (std::uint8_t order = 0; order < orders.size(); ++order) {
@@ -172,28 +115,79 @@ class FourSearch {
           four.shape, four_signature(ids, [&](std::uint16_t id) { return image_[id].type; }));
       if (group.size == 0) continue;
       tests_ += group.size;
-      const Turned seen = turned_to(image_, ids);
-      hits_.clear();
-      test_fours(index_, group, four_products(seen.rays), kTolerance, hits_);
-      // What is joined in the image is an edge of the model: an edge may be missed, not made up.
-      const std::uint8_t links =
-          link_mask(ids, [&](std::uint16_t a, std::uint16_t b) { return image_.linked(a, b); });
-      constexpr std::size_t kAhead = 8;  // fours lie apart in memory: they are fetched in time
-      for (std::size_t i = 0; i < hits_.size(); ++i) {
-        if (i + kAhead < hits_.size()) __builtin_prefetch(&index_[hits_[i + kAhead].model_four]);
-        const FourHit& hit = hits_[i];
-        const ModelFour& model = index_[hit.model_four];
-        if ((links & ~model.links) != 0 || !options_.wanted[model.model] ||
-            hit.size < least_size_ || hit.size > most_size_) {
-          continue;
-        }
-        FourPose solver(models_[model.model], model.ids, seen);
-        if (!model.views[nearest_view(solver.to_camera())]) continue;
-        solver.correct();
-        const double sigmas = solver.sigmas(sigma_);
-        if (sigmas > kMostSigmas) continue;
-        trials.push_back({sigmas, hit.model_four, static_cast<std::uint32_t>(number), order});
+      const TurnedFour seen = turned_to(image_, ids);
+      questions_.push_back(
+          {group,
+           static_cast<std::uint32_t>(number),
+           order,
+           link_mask(ids, [&](std::uint16_t a, std::uint16_t b) { return image_.linked(a, b); }),
+           seen,
+           four_products(seen.rays)});
+    }
+  }
+
+  // Questions of one group together, block by block: what is looked at is then still in the cache.
+  void answer(std::vector<Trial>& trials) {
+    constexpr std::size_t kBlock = 1024;
+    std::stable_sort(
+        questions_.begin(), questions_.end(), [](const Question& a, const Question& b) {
+          return a.group.first < b.group.first;
+        });
+    for (std::size_t begin = 0; begin < questions_.size();) {
+      const FourIndex::Group group = questions_[begin].group;
+      std::size_t end = begin;
+      while (end < questions_.size() && questions_[end].group.first == group.first) ++end;
+      for (std::size_t at = 0; at < group.size; at += kBlock) {
+        const FourIndex::Group block{group.first + at, std::min(kBlock, group.size - at)};
+        for (std::size_t i = begin; i < end; ++i) test(questions_[i], block, trials);
       }
+      begin = end;
+    }
+  }
+
+  void test(const Question& question, const FourIndex::Group& block, std::vector<Trial>& trials) {
+    hits_.clear();
+    test_fours(index_, block, question.products, kTolerance, hits_);
+    // Fours lie apart in memory: all of them are fetched while the first one is looked at.
+    for (const FourHit& hit : hits_) __builtin_prefetch(&index_[hit.model_four]);
+    std::erase_if(hits_, [&](const FourHit& hit) { return !may_be(question, hit); });
+    for (std::size_t first = 0; first < hits_.size(); first += FourLanes::kLanes) {
+      const std::size_t count = std::min(FourLanes::kLanes, hits_.size() - first);
+      look_closer(question, std::span(hits_).subspan(first, count), trials);
+    }
+  }
+
+  bool may_be(const Question& question, const FourHit& hit) const {
+    const ModelFour& model = index_[hit.model_four];
+    // What is joined in the image is an edge of the model: an edge may be missed, not made up.
+    return (question.links & ~model.links) == 0 && options_.wanted[model.model] &&
+           hit.size >= least_size_ && hit.size <= most_size_;
+  }
+
+  // At no more hits than there are lanes: at all at once, then at what is left one by one.
+  void look_closer(const Question& question,
+                   std::span<const FourHit> hits,
+                   std::vector<Trial>& trials) {
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const ModelFour& model = index_[hits[i].model_four];
+      const std::vector<PosePoint>& points = models_[model.model].points;
+      lanes_.set(i,
+                 {&points[model.ids[0]].xyz,
+                  &points[model.ids[1]].xyz,
+                  &points[model.ids[2]].xyz,
+                  &points[model.ids[3]].xyz});
+    }
+    std::array<std::uint8_t, FourLanes::kLanes> passes;
+    screen_fours(lanes_, question.seen.rays, kMostSigmas, sigma_, passes);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      if (passes[i] == 0) continue;
+      const ModelFour& model = index_[hits[i].model_four];
+      FourPose solver(models_[model.model].points, model.ids, question.seen);
+      if (!model.views[nearest_view(solver.to_camera())]) continue;
+      solver.correct();
+      const double sigmas = solver.sigmas(sigma_);
+      if (sigmas > kMostSigmas) continue;
+      trials.push_back({sigmas, hits[i].model_four, question.image_four, question.order});
     }
   }
 
@@ -205,7 +199,9 @@ class FourSearch {
   double sigma_ = 1.0;  // of a ray's coordinate
   float least_size_ = 0.0F, most_size_ = 0.0F;
   std::size_t next_ = 0, tests_ = 0, batch_ = kFirstBatch;
+  std::vector<Question> questions_;
   std::vector<FourHit> hits_;
+  FourLanes lanes_;
 };
 
 // A pose that is worth trying.

@@ -33,9 +33,12 @@ class ViewTable {
   }
 
   std::size_t at(const Eigen::Vector3d& direction) const {
-    Eigen::Index axis = 0;
-    const double longest = direction.cwiseAbs().maxCoeff(&axis);
-    if (!(longest > 0.0) || !std::isfinite(longest)) return 0;
+    // Without branches: which axis is the longest is as good as chance.
+    const Eigen::Vector3d size = direction.cwiseAbs();
+    const double of_two = std::max(size.x(), size.y()), longest = std::max(of_two, size.z());
+    Eigen::Index axis = size.y() > size.x() ? 1 : 0;
+    axis = size.z() > of_two ? 2 : axis;
+    if (!(longest > 0.0) || !std::isfinite(size.sum())) return 0;
     const std::size_t face = 2 * static_cast<std::size_t>(axis) + (direction[axis] > 0.0 ? 0 : 1);
     const std::size_t i = place(direction[(axis + 1) % 3] / longest);
     const std::size_t j = place(direction[(axis + 2) % 3] / longest);

@@ -96,5 +96,33 @@ TEST(FourMetric, DependsNeitherOnShiftNorScaleNorTurnInTheImage) {
   EXPECT_TRUE(is_hit(hits, which));
 }
 
+TEST(FourMetric, IsTheSameOnAllInstructionSets) {
+  constexpr std::size_t kCount = 40 * FourIndex::kLanes;
+  Random random(4);
+  std::array<std::vector<float>, 6> planes;
+  std::array<const float*, 6> metric{};
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (std::size_t i = 0; i < kCount; ++i)
+      planes[k].push_back(static_cast<float>(random.uniform(-1.0, 1.0)));
+    metric[k] = planes[k].data();
+  }
+  std::array<Eigen::Vector2d, 4> rays;
+  for (Eigen::Vector2d& ray : rays) ray = {random.normal(), random.normal()};
+  const auto passes_by = [&](const char* name) {
+    std::vector<std::uint8_t> passes(kCount, 7);
+    four_kernel(name)(metric.data(), kCount, four_products(rays), 0.5F, passes.data());
+    return passes;
+  };
+  const std::vector<std::uint8_t> base = passes_by("sse2");
+  EXPECT_GT(std::count(base.begin(), base.end(), 255), 0);
+  EXPECT_GT(std::count(base.begin(), base.end(), 0), 0);
+  for (const char* name : {"avx2", "avx512"}) {
+    if (four_kernel(name) != nullptr) {
+      EXPECT_EQ(passes_by(name), base) << name;
+    }
+  }
+  EXPECT_EQ(four_kernel("none"), nullptr);
+}
+
 }  // namespace
 }  // namespace landmarkdb
