@@ -91,10 +91,15 @@ EdgeGrid::EdgeGrid(const ImageFeatures& features) {
 }
 
 std::optional<EdgeGrid::Cells> EdgeGrid::cells_near(const Eigen::Vector2d& uv,
+                                                    const Eigen::Vector2d& normal,
                                                     double reach_px) const {
   if (edges_.empty()) return std::nullopt;
-  const double x0 = (uv.x() - reach_px) / kCell_px, x1 = (uv.x() + reach_px) / kCell_px;
-  const double y0 = (uv.y() - reach_px) / kCell_px, y1 = (uv.y() + reach_px) / kCell_px;
+  constexpr double kRounding_px = 1e-6;
+  const double nx = std::abs(normal.x()), ny = std::abs(normal.y());
+  const double wide_px = std::min(reach_px, nx * reach_px + ny * kBeside_px + kRounding_px);
+  const double high_px = std::min(reach_px, ny * reach_px + nx * kBeside_px + kRounding_px);
+  const double x0 = (uv.x() - wide_px) / kCell_px, x1 = (uv.x() + wide_px) / kCell_px;
+  const double y0 = (uv.y() - high_px) / kCell_px, y1 = (uv.y() + high_px) / kCell_px;
   if (!(x1 >= 0.0) || !(y1 >= 0.0) || !(x0 < static_cast<double>(columns_)) ||
       !(y0 < static_cast<double>(rows_))) {
     return std::nullopt;
@@ -107,7 +112,7 @@ const EdgePoint* EdgeGrid::nearest(const Eigen::Vector2d& uv,
                                    const Eigen::Vector2d& normal,
                                    double reach_px,
                                    double min_cosine) const {
-  const std::optional<Cells> cells = cells_near(uv, reach_px);
+  const std::optional<Cells> cells = cells_near(uv, normal, reach_px);
   if (!cells) return nullptr;
   const EdgePoint* best = nullptr;
   double least = reach_px;

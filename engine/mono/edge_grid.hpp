@@ -38,7 +38,7 @@ class EdgeGrid {
                        double reach_px,
                        double min_cosine,
                        const Visit& visit) const {
-    const std::optional<Cells> cells = cells_near(uv, reach_px);
+    const std::optional<Cells> cells = cells_near(uv, normal, reach_px);
     if (!cells) return;
     for (std::size_t y = cells->first_y; y <= cells->last_y; ++y) {
       for (const EdgePoint& edge : row_of(*cells, y)) {
@@ -60,7 +60,10 @@ class EdgeGrid {
   struct Cells {
     std::size_t first_x, last_x, first_y, last_y;
   };
-  std::optional<Cells> cells_near(const Eigen::Vector2d& uv, double reach_px) const;
+  // Around the line across `uv` on which edge points are looked for.
+  std::optional<Cells> cells_near(const Eigen::Vector2d& uv,
+                                  const Eigen::Vector2d& normal,
+                                  double reach_px) const;
   std::span<const EdgePoint> row_of(const Cells& cells, std::size_t y) const {
     const std::size_t row = y * columns_;
     return {edges_.data() + starts_[row + cells.first_x],

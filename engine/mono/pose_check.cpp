@@ -312,6 +312,7 @@ void PoseCheck::settle_on_edges(MonoCandidate& candidate) const {
   RigidPose pose = candidate.pose;
   std::vector<EdgeSample> samples =
       visible_edges(search, camera_, pose, kStep_px * options_.scale, kMostSamples);
+  const double before = edge_share(samples, edges_);
   RefineState state;
   bool refined = false;
   for (const double reach : kReach_px) {
@@ -334,9 +335,6 @@ void PoseCheck::settle_on_edges(MonoCandidate& candidate) const {
     samples = visible_edges(search, camera_, pose, kStep_px * options_.scale, kMostSamples);
   }
   const double share = edge_share(samples, edges_);
-  const double before = edge_share(
-      visible_edges(search, camera_, candidate.pose, kStep_px * options_.scale, kMostSamples),
-      edges_);
   candidate.edge_share = std::max(share, before);
   if (refined && share >= before) {
     candidate.pose = pose;
