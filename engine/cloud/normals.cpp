@@ -9,7 +9,7 @@
 #include "engine/base/error.hpp"
 #include "engine/base/parallel.hpp"
 #include "engine/cloud/cell_grid.hpp"
-#include "engine/cloud/neighbourhood.hpp"
+#include "engine/cloud/gathered_points.hpp"
 #include "engine/cloud/orient_normals.hpp"
 
 namespace landmarkdb {
@@ -91,7 +91,7 @@ void fit_cell(PointCloud& cloud,
               const CellGrid& grid,
               const CellGrid::Run& cell,
               const SpatialIndex& index,
-              Neighbourhood& around,
+              GatheredPoints& around,
               std::vector<Neighbour>& neighbours) {
   const CellGrid::Ball ball = grid.ball_around(cell);
   around.gather(grid, ball.centre, radius + ball.radius_m);
@@ -117,7 +117,7 @@ void fit_planes(PointCloud& cloud,
   cloud.normals.assign(cloud.size(), Eigen::Vector3f::Zero());
   const CellGrid grid(cloud.points, radius_m);
   parallel_chunks(grid.cells(), context.threads, [&](std::size_t begin, std::size_t end) {
-    Neighbourhood around;
+    GatheredPoints around;
     std::vector<Neighbour> neighbours;
     for (std::size_t i = begin; i < end; ++i) {
       if ((i - begin) % kStep == 0 && context.should_stop()) return;

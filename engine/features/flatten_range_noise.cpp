@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/base/parallel.hpp"
-#include "engine/cloud/neighbourhood.hpp"
+#include "engine/cloud/gathered_points.hpp"
 #include "engine/cloud/voxel_grid.hpp"
 #include "engine/features/range_noise.hpp"
 #include "engine/features/sensor_ray.hpp"
@@ -37,7 +37,7 @@ struct Flattening {
 // The widest plane about a point that scatters no more than its noise makes it; one of infinite
 // scatter where there is none.
 ScatterPlane noisy_plane(const Flattening& task,
-                         const Neighbourhood& around,
+                         const GatheredPoints& around,
                          std::size_t i,
                          float sigma_m) {
   constexpr float kStillPlane = 2.0F;  // times the noise along the normal
@@ -54,7 +54,7 @@ ScatterPlane noisy_plane(const Flattening& task,
 void flatten_cell(const Flattening& task,
                   const CellGrid& grid,
                   const CellGrid::Run& cell,
-                  Neighbourhood& gathered,
+                  GatheredPoints& gathered,
                   PointCloud& flat) {
   float most_sigma_m = 0.0F;
   for (std::uint32_t place = cell.begin; place < cell.end; ++place) {
@@ -96,7 +96,7 @@ void flatten_range_noise(PreparedCloud& cloud,
   flat.viewpoints = cloud.viewpoints;
   flat.viewpoint_index = cloud.viewpoint_index;
   parallel_chunks(grid.cells(), context.threads, [&](std::size_t begin, std::size_t end) {
-    Neighbourhood gathered;
+    GatheredPoints gathered;
     for (std::size_t i = begin; i < end; ++i) {
       if ((i - begin) % kCellsAtATime == 0) context.check("preprocess");
       flatten_cell(task, grid, grid.cell(i), gathered, flat);

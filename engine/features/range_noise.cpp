@@ -12,7 +12,7 @@
 
 #include "engine/base/parallel.hpp"
 #include "engine/cloud/cell_grid.hpp"
-#include "engine/cloud/neighbourhood.hpp"
+#include "engine/cloud/gathered_points.hpp"
 #include "engine/features/sensor_ray.hpp"
 
 namespace landmarkdb {
@@ -25,7 +25,7 @@ constexpr double kFlattest = 0.25;  // share of a bin's points that are taken fo
 
 // What a neighbourhood scatters about a surface that bends: a quadric over the plane fitted.
 // Infinite where there are too few points for one.
-float scatter_about_quadric(const Neighbourhood& around,
+float scatter_about_quadric(const GatheredPoints& around,
                             const ScatterPlane& plane,
                             const Eigen::Vector3f& at,
                             float radius_m) {
@@ -110,7 +110,7 @@ std::vector<float> scatter_of(const PreparedCloud& cloud,
                               const RunContext& context) {
   std::vector<float> sigma(sample.size());
   parallel_chunks(sample.size(), context.threads, [&](std::size_t begin, std::size_t end) {
-    Neighbourhood around;
+    GatheredPoints around;
     for (std::size_t k = begin; k < end; ++k) {
       if ((k - begin) % kBlock == 0) context.check("preprocess");
       const bool bent = shape == SurfaceShape::kBent;

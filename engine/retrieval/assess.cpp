@@ -11,6 +11,7 @@ namespace landmarkdb {
 
 namespace {
 
+constexpr double kWideStart = 2.5;  // cells of the target: IcpOptions::start_scale_cells
 constexpr std::size_t kCoarsePoints = 400;
 constexpr std::size_t kCoarseLook = 1000;  // a third of which can be seen
 
@@ -66,7 +67,7 @@ VerifyOptions verify_options(const Meeting& meeting) {
 // The last millimetres, by what is to be relied on.
 void refine_precisely(const Meeting& meeting, Assessed& assessed) {
   IcpOptions options;
-  options.start_scale_cells = options.end_scale_cells;
+  options.start_scale_cells = kWideStart;
   assessed.icp = refine_icp(
       meeting.target, meeting.precise, meeting.precise_normals, assessed.T_entry_sensor, options);
   assessed.T_entry_sensor = assessed.icp.T_target_source;
@@ -102,7 +103,7 @@ Assessed assess_coarse(const Meeting& meeting,
     normals.push_back(meeting.source_normals[i]);
   }
   IcpOptions options;
-  options.start_scale_cells = 2.5;
+  options.start_scale_cells = kWideStart;
   options.max_iterations = 20;
   Assessed assessed;
   assessed.T_entry_proposed = T_entry_sensor;

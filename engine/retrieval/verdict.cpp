@@ -113,7 +113,10 @@ bool is_sure(const Standing& best, const VerdictOptions& options) {
 // turned about its axis.
 bool is_rivalled(const Standing& best, const VerdictOptions& options) {
   const Evidence& evidence = best.judged.pose.evidence;
-  if (evidence.observability < options.least_observability) return true;
+  if (evidence.observability <
+      (evidence.of_object ? options.least_observability : options.least_observability_of_place)) {
+    return true;
+  }
   const double share = best.rival_score / best.judged.pose.score;
   if (share >= options.rival_share) return true;
   if (!evidence.of_object || is_sure(best, options)) return false;

@@ -47,6 +47,9 @@ struct VerdictOptions {
   // Below this the surface leaves a freedom open (a slide along a wall, a turn of a bottle), and
   // any pose along it is a rival.
   double least_observability = 0.01;
+  // Of a place: a lone wall measures half of this at the most. Of 1,300 frames of generated places
+  // ten right poses and no wrong one lay between 0.004 and 0.01.
+  double least_observability_of_place = 0.006;
   // An object that is 8 % longer than the one asked for looks much like it, so that more is asked
   // of an answer than the half: this confidence, this score, and that no more than these shares of
   // the outline and of the view speak against it.

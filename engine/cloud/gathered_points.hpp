@@ -25,7 +25,7 @@ Eigen::Matrix3f covariance_of(const Moments& moments);
 
 // Points of a grid side by side, gathered once for the fits around all points of a spot. Belongs to
 // one thread; keeps its memory from spot to spot.
-class Neighbourhood {
+class GatheredPoints {
  public:
   // All points of the grid nearer to `centre` than `radius_m`, and others near by.
   void gather(const CellGrid& grid, const Eigen::Vector3f& centre, float radius_m);

@@ -1,4 +1,4 @@
-#include "engine/cloud/neighbourhood.hpp"
+#include "engine/cloud/gathered_points.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ Eigen::Matrix3f covariance_of(const Moments& moments) {
   return squares / moments.count - mean * mean.transpose();
 }
 
-void Neighbourhood::gather(const CellGrid& grid, const Eigen::Vector3f& centre, float radius_m) {
+void GatheredPoints::gather(const CellGrid& grid, const Eigen::Vector3f& centre, float radius_m) {
   grid.runs(centre, radius_m, runs_);
   x_.clear();
   y_.clear();
@@ -51,12 +51,12 @@ void Neighbourhood::gather(const CellGrid& grid, const Eigen::Vector3f& centre, 
   pad(z_);
 }
 
-Moments Neighbourhood::moments(const Eigen::Vector3f& at, float radius_m) const {
+Moments GatheredPoints::moments(const Eigen::Vector3f& at, float radius_m) const {
   static const MomentSums add_up = moment_sums();
   return add_up(x_.data(), y_.data(), z_.data(), x_.size(), at.data(), radius_m * radius_m);
 }
 
-ScatterPlane Neighbourhood::fit_plane(const Eigen::Vector3f& at, float radius_m) const {
+ScatterPlane GatheredPoints::fit_plane(const Eigen::Vector3f& at, float radius_m) const {
   constexpr float kFewest = 6.0F;
   const Moments moments = this->moments(at, radius_m);
   ScatterPlane plane;

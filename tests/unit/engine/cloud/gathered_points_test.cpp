@@ -1,4 +1,4 @@
-#include "engine/cloud/neighbourhood.hpp"
+#include "engine/cloud/gathered_points.hpp"
 
 #include <cmath>
 #include <vector>
@@ -22,9 +22,9 @@ std::vector<Eigen::Vector3f> two_walls(double sigma_m) {
   return points;
 }
 
-TEST(Neighbourhood, FitsThePlaneOfThePointsWithinTheRadius) {
+TEST(GatheredPoints, FitsThePlaneOfThePointsWithinTheRadius) {
   const CellGrid grid(two_walls(0.02), 0.125);
-  Neighbourhood around;
+  GatheredPoints around;
   around.gather(grid, {1.0F, 0.0F, 0.0F}, 0.6F);
   const ScatterPlane plane = around.fit_plane({1.0F, 0.1F, -0.1F}, 0.4F);
   EXPECT_GT(std::abs(plane.normal.x()), 0.99F);
@@ -32,13 +32,13 @@ TEST(Neighbourhood, FitsThePlaneOfThePointsWithinTheRadius) {
   EXPECT_NEAR(plane.sigma_m, 0.02F, 0.005F);
 }
 
-TEST(Neighbourhood, HoldsEveryPointNearerThanItWasAskedFor) {
+TEST(GatheredPoints, HoldsEveryPointNearerThanItWasAskedFor) {
   const std::vector<Eigen::Vector3f> points = two_walls(0.02);
   const CellGrid grid(points, 0.125);
   const Eigen::Vector3f centre(1.0F, 0.3F, 0.2F);
   constexpr float kRadius = 0.5F;
   const auto near = [&](const Eigen::Vector3f& p) { return (p - centre).norm() < kRadius; };
-  Neighbourhood around;
+  GatheredPoints around;
   around.gather(grid, {3.0F, 0.0F, 0.0F}, 0.3F);  // what was there before is gone
   around.gather(grid, centre, kRadius);
   std::size_t expected = 0;
@@ -49,9 +49,9 @@ TEST(Neighbourhood, HoldsEveryPointNearerThanItWasAskedFor) {
   EXPECT_LT(around.size(), points.size() / 2);
 }
 
-TEST(Neighbourhood, FindsNoPlaneAboutAHandfulOfPoints) {
+TEST(GatheredPoints, FindsNoPlaneAboutAHandfulOfPoints) {
   const CellGrid grid(two_walls(0.02), 0.125);
-  Neighbourhood around;
+  GatheredPoints around;
   around.gather(grid, {2.0F, 0.0F, 0.0F}, 0.3F);
   EXPECT_TRUE(std::isinf(around.fit_plane({2.0F, 0.0F, 0.0F}, 0.3F).sigma_m));
 }
