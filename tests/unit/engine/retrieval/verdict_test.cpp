@@ -108,6 +108,15 @@ TEST(Judge, TakesNoPoseThatHasAnEqualOrSlides) {
   EXPECT_NE(told(0.9F).status, QueryStatus::kLocalized);
 }
 
+TEST(Judge, TakesAPlaceThatIsHeldFasterThanByALoneWall) {
+  const auto made = entries(1, 0.05);
+  Assessed best = good(0, kZero, 0.9);
+  best.evidence.agreeing = 200.0;
+  best.evidence.contrast = 0.5;
+  best.evidence.observability = 0.008;
+  EXPECT_EQ(judge({best}, made, kZero, {}).status, QueryStatus::kLocalized);
+}
+
 TEST(Judge, TakesNoUnsurePoseThatAnAreaOfTheViewContradicts) {
   Assessed best = good(0, kZero, 0.8);
   Assessed rival = good(0, {5, 0, 0}, 0.5);
