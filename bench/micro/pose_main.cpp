@@ -160,19 +160,18 @@ void add_triples() {
   add_ours("ours, in sight", 0, solve_triple_in_sight);
   add_ours("ours, in sight, 2 rounds", 2, solve_triple_in_sight);
   // Without the vector that the peers' interface asks for.
-  benchmark::RegisterBenchmark(
-      "three points/ours, in sight, bare",
-      [triples](benchmark::State& state) {
-        for (auto _ : state) {
-          for (const Triple& t : *triples) {
-            benchmark::DoNotOptimize(solve_triple_in_sight(t.model, t.rays));
-          }
-        }
-        state.counters["a_pose"] = benchmark::Counter(
-            static_cast<double>(triples->size()),
-            benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-      })
-      ->Unit(benchmark::kMillisecond);
+  const auto add_bare = [&](const char* name, auto solve) {
+    benchmark::RegisterBenchmark(name, [triples, solve](benchmark::State& state) {
+      for (auto _ : state) {
+        for (const Triple& t : *triples) benchmark::DoNotOptimize(solve(t.model, t.rays));
+      }
+      state.counters["a_pose"] = benchmark::Counter(
+          static_cast<double>(triples->size()),
+          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    })->Unit(benchmark::kMillisecond);
+  };
+  add_bare("three points/ours, weak perspective, bare", solve_triple);
+  add_bare("three points/ours, in sight, bare", solve_triple_in_sight);
   add_peers(set, 3, false);
 }
 
