@@ -156,8 +156,9 @@ void check_viewpoints(PointCloud& cloud) {
 }  // namespace
 
 CloudCounts sanitise(PointCloud& cloud, const RunContext& context) {
-  constexpr double kFarExtents = 1e5;
-  constexpr double kFarAtLeast_m = 1e6;
+  // Of a room 30 km: a scan reaches less far, and the grids of voxels a little further.
+  constexpr double kFarExtents = 3e3;
+  constexpr double kFarAtLeast_m = 100.0;
   check_lengths(cloud);
   CloudCounts counts;
   counts.points = cloud.size();

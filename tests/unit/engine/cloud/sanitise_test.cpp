@@ -55,6 +55,19 @@ TEST(Sanitise, KeepsAWideCloudWhole) {
   EXPECT_EQ(sanitise(cloud).used, 100U);
 }
 
+// Further out than grids of voxels reach: one such point must not cost the rest.
+TEST(Sanitise, DropsALonePointFarOutsideOfARoom) {
+  for (const float away : {9e4F, 3e5F, 1e7F}) {
+    PointCloud cloud = line_of_points(20);
+    cloud.points.emplace_back(away, 1.0F, 2.0F);
+    EXPECT_EQ(sanitise(cloud).out_of_range, 1U) << away;
+    EXPECT_EQ(cloud.size(), 20U);
+  }
+  PointCloud cloud = line_of_points(20);
+  cloud.points.emplace_back(5000.0F, 1.0F, 2.0F);  // as far as a long-range scanner sees
+  EXPECT_EQ(sanitise(cloud).used, 21U);
+}
+
 TEST(Sanitise, SurvivesACloudWithNothingInIt) {
   PointCloud cloud;
   EXPECT_EQ(sanitise(cloud).used, 0U);
