@@ -2,7 +2,6 @@
 
 #include <cstdint>
 
-#include "engine/base/fast_exp.hpp"
 #include "engine/base/instruction_sets.hpp"
 
 namespace landmarkdb {

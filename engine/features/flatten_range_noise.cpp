@@ -24,8 +24,6 @@ struct Flattening {
   float harmless_m;  // noise that normals and descriptors bear
   float least_radius_m;
 
-  float noise_at(std::size_t i) const { return noise.at(ray_to(cloud, i).range_m); }
-
   // Wide enough to hold the whole slab of scattered points.
   float radius_m(float sigma_m) const {
     constexpr float kPerNoise = 5.0F;
@@ -38,13 +36,13 @@ struct Flattening {
 // scatter where there is none.
 ScatterPlane noisy_plane(const Flattening& task,
                          const GatheredPoints& around,
-                         std::size_t i,
+                         const Eigen::Vector3f& point,
+                         const SensorRay& ray,
                          float sigma_m) {
   constexpr float kStillPlane = 2.0F;  // times the noise along the normal
   constexpr float kNarrower = 0.7F;
-  const SensorRay ray = ray_to(task.cloud, i);
   for (float radius = task.radius_m(sigma_m); radius >= task.least_radius_m; radius *= kNarrower) {
-    const ScatterPlane plane = around.fit_plane(task.cloud.points[i], radius);
+    const ScatterPlane plane = around.fit_plane(point, radius);
     if (plane.sigma_m <= kStillPlane * sigma_m * ray.steepness(plane.normal)) return plane;
   }
   return {};
@@ -56,20 +54,22 @@ void flatten_cell(const Flattening& task,
                   const CellGrid::Run& cell,
                   GatheredPoints& gathered,
                   PointCloud& flat) {
+  const PreparedCloud& cloud = task.cloud;
   float most_sigma_m = 0.0F;
   for (std::uint32_t place = cell.begin; place < cell.end; ++place) {
-    most_sigma_m = std::max(most_sigma_m, task.noise_at(grid.order()[place]));
+    const SensorRay ray = ray_to(cloud, grid.order()[place]);
+    most_sigma_m = std::max(most_sigma_m, task.noise.at(ray.range_m));
   }
   if (most_sigma_m <= task.harmless_m) return;
   const CellGrid::Ball ball = grid.ball_around(cell);
   gathered.gather(grid, ball.centre, task.radius_m(most_sigma_m) + ball.radius_m);
   for (std::uint32_t place = cell.begin; place < cell.end; ++place) {
     const std::size_t i = grid.order()[place];
-    const float sigma_m = task.noise_at(i);
+    const SensorRay ray = ray_to(cloud, i);
+    const float sigma_m = task.noise.at(ray.range_m);
     if (sigma_m <= task.harmless_m) continue;
-    const ScatterPlane plane = noisy_plane(task, gathered, i, sigma_m);
+    const ScatterPlane plane = noisy_plane(task, gathered, cloud.points[i], ray, sigma_m);
     if (!std::isfinite(plane.sigma_m)) continue;
-    const PreparedCloud& cloud = task.cloud;
     flat.points[i] -= plane.normal * plane.normal.dot(cloud.points[i] - plane.mean);
     flat.normals[i] = plane.normal.dot(cloud.normals[i]) < 0.0F ? -plane.normal : plane.normal;
   }

@@ -2,13 +2,7 @@
 // and under a target pragma. `Floats` and `Ints` are vectors of kLanes numbers that the compiler
 // lowers to what the target has; the operations are the same for all. Comparisons give -1 or 0.
 
-#define LANDMARKDB_INLINE [[gnu::always_inline]] inline
-
-LANDMARKDB_INLINE Floats load(const float* p) {
-  Floats v;
-  __builtin_memcpy(&v, p, sizeof v);
-  return v;
-}
+#include "engine/base/float_lanes_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
 
 template <typename Vector, typename Number>
 LANDMARKDB_INLINE void store(Number* p, Vector v) {

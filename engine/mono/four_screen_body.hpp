@@ -2,17 +2,11 @@
 // and under a target pragma. `Floats` is a vector of kLanes numbers that the compiler lowers to
 // what the target has; the operations and their order are the same for all.
 
-#define LANDMARKDB_INLINE [[gnu::always_inline]] inline
+#include "engine/base/float_lanes_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
 
 struct Vector {
   Floats x, y, z;
 };
-
-LANDMARKDB_INLINE Floats load(const float* from) {
-  Floats v;
-  __builtin_memcpy(&v, from, sizeof v);
-  return v;
-}
 
 LANDMARKDB_INLINE Floats dot(const Vector& a, const Vector& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;

@@ -2,7 +2,8 @@
 // and under a target pragma. `Floats` and `Ints` are vectors of kLanes numbers that the compiler
 // lowers to what the target has; the operations and their order are the same for all.
 
-#include "engine/base/float_lanes_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
+#include "engine/base/float_lanes_body.hpp"        // NOLINT(bugprone-suspicious-include): see there
+#include "engine/registration/float_exp_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
 
 LANDMARKDB_INLINE Floats weight_of(PairWeight weight, Floats squared, float factor) {
   if (weight == PairWeight::kGaussian) return exponential(squared * factor);

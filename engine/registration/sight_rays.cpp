@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/fast_exp.hpp"
 #include "engine/base/instruction_sets.hpp"
 #include "engine/registration/equal_angles.hpp"
 
