@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #include "engine/base/parallel.hpp"
+#include "engine/registration/name_cells.hpp"
 #include "engine/registration/surface_grid.hpp"
 
 namespace landmarkdb {
@@ -11,28 +11,7 @@ namespace {
 
 constexpr std::size_t kStep = 4096;  // points between two looks at the stop token
 
-// A row of a block; half of it fits a register of the least machine.
-using Floats = float __attribute__((vector_size(32)));
-using Numbers = std::uint32_t __attribute__((vector_size(32)));
-
 float square(float value) { return value * value; }
-
-// Names `surfel` in the cells of a row to which it is nearer than what they name.
-void name_in_row(const Floats& distance,
-                 float most,
-                 std::uint32_t surfel,
-                 float* nearest,
-                 std::uint32_t* named) {
-  Floats near;
-  Numbers names;
-  std::memcpy(&near, nearest, sizeof near);
-  std::memcpy(&names, named, sizeof names);
-  const auto closer = (distance < near) & (distance <= Floats{} + most);
-  near = closer ? distance : near;
-  names = closer ? Numbers{} + surfel : names;
-  std::memcpy(nearest, &near, sizeof near);
-  std::memcpy(named, &names, sizeof names);
-}
 
 }  // namespace
 
@@ -112,35 +91,24 @@ void SurfaceGrid::measure_block(const Block& block,
   }
 }
 
-// Of surfels as near to a cell the first one named stays.
 void SurfaceGrid::fill_block(Block& block,
                              const Cell& place,
                              std::span<const std::uint32_t> surfels) const {
+  static_assert(BlockFill::kSide == kBlockSide && sizeof(Surfel) % sizeof(float) == 0);
   const Cell low = place * kBlockSide;
   std::array<float, kBlockCells> nearest;
   measure_block(block, low, nearest);
-  const float most = most_squared();
-  for (const std::uint32_t surfel : surfels) {
-    const Eigen::Vector3f p = surfels_[surfel].point;
-    const Cell home = cell_of(p) - low;
-    Floats along_x;
-    for (int x = 0; x < kBlockSide; ++x) {
-      const bool in_reach = x >= home.x() - reach_ && x <= home.x() + reach_;
-      along_x[x] =
-          in_reach ? square(middle(low.x() + x) - p.x()) : std::numeric_limits<float>::infinity();
-    }
-    const int last_z = std::min(kBlockSide - 1, home.z() + reach_);
-    const int last_y = std::min(kBlockSide - 1, home.y() + reach_);
-    for (int z = std::max(0, home.z() - reach_); z <= last_z; ++z) {
-      const float along_z = square(middle(low.z() + z) - p.z());
-      for (int y = std::max(0, home.y() - reach_); y <= last_y; ++y) {
-        const float beside = square(middle(low.y() + y) - p.y()) + along_z;
-        if (beside > most) continue;
-        const auto row = static_cast<std::size_t>((z * kBlockSide + y) * kBlockSide);
-        name_in_row(along_x + beside, most, surfel, nearest.data() + row, block.data() + row);
-      }
-    }
+  BlockFill fill{.named = block.data(),
+                 .nearest_m2 = nearest.data(),
+                 .inverse_cell = inverse_cell_,
+                 .reach = reach_,
+                 .most_m2 = most_squared(),
+                 .surfels = surfels};
+  for (int axis = 0; axis < 3; ++axis) {
+    fill.first_cell[axis] = low[axis];
+    for (int i = 0; i < kBlockSide; ++i) fill.middle_m[axis][i] = middle(low[axis] + i);
   }
+  cell_namer()(fill, surfels_.front().point.data(), sizeof(Surfel) / sizeof(float));
 }
 
 }  // namespace landmarkdb
