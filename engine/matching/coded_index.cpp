@@ -1,8 +1,8 @@
 #include "engine/matching/coded_index.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,6 +15,7 @@
 #include "engine/matching/make_codes.hpp"
 #include "engine/matching/measures.hpp"
 #include "engine/matching/nearest_list.hpp"
+#include "engine/matching/shortlist.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -32,62 +33,6 @@ constexpr std::int32_t kLowest = PackedCodes::kNoCode;
 // rest.
 constexpr std::size_t kFirstLists = 16;
 
-// A score and a row (or list) as one number: more is better, the lower row of two with one score.
-using Candidate = std::uint64_t;
-
-Candidate make_candidate(std::int32_t score, std::uint32_t row) {
-  constexpr std::uint32_t kSign = std::uint32_t{1} << 31U;
-  return static_cast<Candidate>(static_cast<std::uint32_t>(score) ^ kSign) << 32U | ~row;
-}
-std::int32_t score_of(Candidate candidate) {
-  constexpr std::uint32_t kSign = std::uint32_t{1} << 31U;
-  return static_cast<std::int32_t>(static_cast<std::uint32_t>(candidate >> 32U) ^ kSign);
-}
-std::uint32_t row_of(Candidate candidate) { return ~static_cast<std::uint32_t>(candidate); }
-
-// The candidate in the middle of a few spread over the range.
-Candidate middle_of(std::span<const Candidate> range) {
-  constexpr std::size_t kSampled = 9;
-  std::array<Candidate, kSampled> sample{};
-  for (std::size_t i = 0; i < kSampled; ++i)
-    sample[i] = range[i * (range.size() - 1) / (kSampled - 1)];
-  std::nth_element(sample.begin(), sample.begin() + kSampled / 2, sample.end());
-  return sample[kSampled / 2];
-}
-
-// Those above `pivot` ahead of the others; how many there are. Without a branch on what they are,
-// of which half would be mispredicted.
-std::size_t part(std::span<Candidate> range, Candidate pivot) {
-  std::size_t above = 0;
-  for (Candidate& candidate : range) {
-    const Candidate here = candidate;
-    candidate = range[above];
-    range[above] = here;
-    above += here > pivot ? 1U : 0U;
-  }
-  return above;
-}
-
-// Brings the `most` best to the front, in no order. No two candidates are the same.
-void put_best_ahead(std::span<Candidate> candidates, std::size_t most) {
-  if (most == 0 || candidates.size() <= most) return;
-  constexpr std::size_t kFew = 32;
-  while (candidates.size() > kFew) {
-    const std::size_t above = part(candidates, middle_of(candidates));
-    if (above == most) return;
-    if (above > most) {
-      candidates = candidates.first(above);
-    } else {
-      candidates = candidates.subspan(above);
-      most -= above;
-    }
-  }
-  std::nth_element(candidates.begin(),
-                   candidates.begin() + static_cast<std::ptrdiff_t>(most) - 1,
-                   candidates.end(),
-                   std::greater<>());
-}
-
 // Reads ahead: what lies here is wanted a few rows later, and comes from memory.
 void prefetch(const void* from, std::size_t bytes) {
   constexpr std::size_t kLine = 64;
@@ -96,96 +41,106 @@ void prefetch(const void* from, std::size_t bytes) {
   }
 }
 
-// The `most` best candidates offered so far, whatever the order of offers.
-class Shortlist {
- public:
-  void reset(std::size_t most) {
-    most_ = most;
-    candidates_.clear();
-    floor_ = PackedCodes::kNoCode;
-  }
-  // Candidates up to this score need not be offered.
-  std::int32_t floor() const { return floor_; }
-  void offer(Candidate candidate) {
-    candidates_.push_back(candidate);
-    if (candidates_.size() >= most_ + std::max(most_, kSpare)) prune();
-  }
-  // The best, in no order, for the caller to change.
-  std::span<Candidate> best() {
-    if (candidates_.size() > most_) prune();
-    return candidates_;
-  }
-
- private:
-  void prune() {
-    put_best_ahead(candidates_, most_);
-    candidates_.resize(most_);
-    const Candidate worst = *std::min_element(candidates_.begin(), candidates_.end());
-    floor_ = score_of(worst) - 1;  // one as high may still have a lower row
-  }
-
-  // Choosing among a few more at once costs less than choosing more often.
-  static constexpr std::size_t kSpare = 1024;
-
-  std::size_t most_ = 1;
-  std::int32_t floor_ = PackedCodes::kNoCode;
-  std::vector<Candidate> candidates_;
-};
-
 // Who wants which list, sorted by list.
 struct Wishes {
   std::vector<std::uint32_t> start;    // of each list in `queries`, and the end
   std::vector<std::uint32_t> queries;  // of the block
+
+  std::span<const std::uint32_t> of(std::size_t list) const {
+    return std::span(queries).subspan(start[list], start[list + 1] - start[list]);
+  }
+};
+
+// Rows of which tails are read, and rows that are compared in full.
+struct Effort {
+  std::size_t refined = 0, compared = 0;
 };
 
 std::size_t share_of(double share, std::size_t count) {
   return static_cast<std::size_t>(share * static_cast<double>(count));
 }
 
-class CodedIndex : public DescriptorIndex {
+}  // namespace
+
+class CodedIndexMaker::Index : public CodedIndex {
  public:
-  CodedIndex(std::span<const CodedPart> parts, const CodedSearchOptions& options)
-      : options_(options) {
-    std::vector<std::int8_t> centres;
-    for (const CodedPart& part : parts) {
-      const bool coded_only = part.values.empty();
-      const std::size_t rows = coded_only ? part.codes->size() : part.values.size() / kShotLength;
-      if (coded_only && rows > 0) compares_in_full_ = false;
-      const std::string fault = fault_of_codes(*part.codes, rows);
-      if (!fault.empty()) throw Error(ErrorCode::kInvalidArgument, "the index " + fault);
-      if (rows >= kNoRow - size_) {
-        throw Error(ErrorCode::kInvalidArgument, "stored descriptors are 2^32 - 1 or more");
-      }
-      add(part, centres);
+  explicit Index(const CodedSearchOptions& options) : options_(options) {}
+
+  void reserve(std::size_t rows) {
+    const std::size_t places = rows + rows / 8;  // lists end in groups that are not full
+    codes_.bytes.reserve(places * kCodeLength);
+    codes_.bias.reserve(places);
+    row_of_.reserve(places);
+    if (options_.keeps_tails) tails_.reserve(rows * kCodeLength);
+  }
+
+  void add(const CodedPart& part) {
+    const bool coded_only = part.values.empty();
+    const std::size_t rows = coded_only ? part.codes->size() : part.values.size() / kShotLength;
+    if ((coded_only && rows > 0) || !options_.keeps_tails) compares_in_full_ = false;
+    const std::string fault = fault_of_codes(*part.codes, rows);
+    if (!fault.empty()) throw Error(ErrorCode::kInvalidArgument, "the index " + fault);
+    if (rows >= kNoRow - size_) {
+      throw Error(ErrorCode::kInvalidArgument, "stored descriptors are 2^32 - 1 or more");
     }
+    first_list_.push_back(list_start_.size());
+    add_lists(*part.codes);
+    if (options_.keeps_tails) add_tails(*part.codes);
+    first_row_.push_back(size_);
+    values_.push_back(part.values);
+    size_ += rows;
+  }
+
+  void finish() {
+    first_list_.push_back(list_start_.size());
     list_start_.push_back(codes_.groups());
-    centres_.append(centres);
+    packed_centres_.append(centres_);
     std::vector<std::int8_t> sample;
     for (std::size_t l = 0; l < lists(); l += kSampleStep) {
-      const auto* centre = centres.data() + l * kCodeLength;
+      const auto* centre = centres_.data() + l * kCodeLength;
       sample.insert(sample.end(), centre, centre + kCodeLength);
     }
     sample_.append(sample);
+    centres_ = {};
   }
 
   std::size_t size() const override { return size_; }
+
+  bool has_tails() const override { return options_.keeps_tails; }
 
   void search(std::span<const float> queries,
               std::size_t k,
               std::vector<DescriptorMatch>& out,
               const RunContext& context) const override {
-    context.check(kStage);
-    const std::vector<float> rows = normalise_rows(queries, Measure::kL2, "query descriptors");
-    const std::size_t count = rows.size() / kShotLength;
-    out.assign(count * k, {});
-    if (count == 0 || k == 0 || size_ == 0) return;
-    const RowCodes codes = code_rows(rows, context);
-    parallel_chunks(count, context.threads, [&](std::size_t begin, std::size_t end) {
-      for (; begin < end && !context.should_stop(); begin += kQueryBlock) {
-        search_block({rows, codes, begin, std::min(begin + kQueryBlock, end)}, k, out, context);
+    const Effort effort{options_.refined + share_of(options_.refined_a_neighbour, k),
+                        options_.compared + share_of(options_.compared_a_neighbour, k)};
+    search_blocks(queries, k, effort, out, context, [&](const Block& block, auto& shortlists) {
+      read_near_lists(block, shortlists, context);
+    });
+  }
+
+  void search_parts(std::span<const std::size_t> parts,
+                    std::span<const float> queries,
+                    std::size_t k,
+                    std::vector<DescriptorMatch>& out,
+                    const RunContext& context) const override {
+    // Many neighbours are asked for, and the very nearest is not more than others: with 4 and 8
+    // tails for each nothing else was found.
+    constexpr std::size_t kRefined = 32;
+    constexpr std::size_t kRefinedANeighbour = 2;
+    const Effort effort{kRefined + kRefinedANeighbour * k,
+                        options_.compared + share_of(options_.compared_a_neighbour, k)};
+    search_blocks(queries, k, effort, out, context, [&](const Block& block, auto& shortlists) {
+      std::vector<std::uint32_t> all(block.size());
+      std::iota(all.begin(), all.end(), 0U);
+      ListReader reader(*this);
+      for (const std::size_t part : parts) {
+        for (std::size_t l = first_list_[part]; l < first_list_[part + 1]; ++l) {
+          if (context.should_stop()) return;
+          reader.read(block, l, all, shortlists);
+        }
       }
     });
-    context.check(kStage);
   }
 
  private:
@@ -206,8 +161,7 @@ class CodedIndex : public DescriptorIndex {
     std::span<const float> row(std::size_t i) const { return descriptor_row(rows, begin + i); }
   };
 
-  void add(const CodedPart& part, std::vector<std::int8_t>& centres) {
-    const DescriptorCodes& codes = *part.codes;
+  void add_lists(const DescriptorCodes& codes) {
     for (std::size_t l = 0; l < codes.lists(); ++l) {
       const std::size_t first = codes.list_start[l];
       const std::size_t count = codes.list_start[l + 1] - first;
@@ -220,46 +174,75 @@ class CodedIndex : public DescriptorIndex {
       row_of_.resize(codes_.bias.size(), kNoRow);
       most_in_list_ = std::max(most_in_list_, count + kCodeGroup);
       const auto* centre = codes.centres.data() + l * kCodeLength;
-      centres.insert(centres.end(), centre, centre + kCodeLength);
+      centres_.insert(centres_.end(), centre, centre + kCodeLength);
     }
+  }
+
+  void add_tails(const DescriptorCodes& codes) {
     tails_.resize((size_ + codes.size()) * kCodeLength);
     for (std::size_t place = 0; place < codes.size(); ++place) {
       std::copy_n(codes.tails.data() + place * kCodeLength,
                   kCodeLength,
                   tails_.data() + (size_ + codes.rows[place]) * kCodeLength);
     }
-    first_row_.push_back(size_);
-    values_.push_back(part.values);
-    size_ += codes.size();
   }
 
   std::size_t lists() const { return list_start_.size() - 1; }
 
-  void search_block(const Block& block,
-                    std::size_t k,
-                    std::vector<DescriptorMatch>& out,
-                    const RunContext& context) const {
-    const std::size_t probes = std::min(
-        lists(),
-        std::max(options_.min_lists,
-                 static_cast<std::size_t>(options_.list_share * static_cast<double>(lists()))));
+  // `read` offers the rows that are looked at to the shortlists of a block of queries.
+  template <typename Read>
+  void search_blocks(std::span<const float> queries,
+                     std::size_t k,
+                     const Effort& effort,
+                     std::vector<DescriptorMatch>& out,
+                     const RunContext& context,
+                     const Read& read) const {
+    context.check(kStage);
+    const std::vector<float> rows = normalise_rows(queries, Measure::kL2, "query descriptors");
+    const std::size_t count = rows.size() / kShotLength;
+    out.assign(count * k, {});
+    if (count == 0 || k == 0 || size_ == 0) return;
+    const RowCodes codes = code_rows(rows, context);
+    parallel_chunks(count, context.threads, [&](std::size_t begin, std::size_t end) {
+      for (; begin < end && !context.should_stop(); begin += kQueryBlock) {
+        const Block block{rows, codes, begin, std::min(begin + kQueryBlock, end)};
+        std::vector<Shortlist> shortlists(block.size());
+        const std::size_t most = has_tails() ? std::max({effort.refined, effort.compared, k}) : k;
+        for (Shortlist& shortlist : shortlists) shortlist.reset(most);
+        read(block, shortlists);
+        for (std::size_t i = 0; i < block.size() && !context.should_stop(); ++i) {
+          write_best(block, i, shortlists[i].best(), effort, k, out);
+        }
+      }
+    });
+    context.check(kStage);
+  }
+
+  // The `k` best of the candidates of a query, once they have been looked at more closely.
+  void write_best(const Block& block,
+                  std::size_t i,
+                  std::span<CodeCandidate> candidates,
+                  const Effort& effort,
+                  std::size_t k,
+                  std::vector<DescriptorMatch>& out) const {
+    DescriptorMatch* found = out.data() + (block.begin + i) * k;
+    if (compares_in_full_) {
+      compare(block.row(i), refine(block.tail(i), candidates, effort.compared), k, found);
+    } else {
+      rank(block.code(i), has_tails() ? refine(block.tail(i), candidates, k) : candidates, found);
+    }
+  }
+
+  void read_near_lists(const Block& block,
+                       std::vector<Shortlist>& shortlists,
+                       const RunContext& context) const {
+    const std::size_t probes =
+        std::min(lists(), std::max(options_.min_lists, share_of(options_.list_share, lists())));
     const std::size_t first = std::min(probes, kFirstLists);
-    const auto compared = options_.compared + share_of(options_.compared_a_neighbour, k);
-    const auto refined = options_.refined + share_of(options_.refined_a_neighbour, k);
     std::vector<std::uint32_t> chosen(block.size() * probes);
     choose_lists(block, probes, first, chosen);
-    std::vector<Shortlist> shortlists(block.size());
-    for (Shortlist& shortlist : shortlists) shortlist.reset(std::max({refined, compared, k}));
     read_lists(block, wishes_for(chosen, probes, 0, first), shortlists, context);
     read_lists(block, wishes_for(chosen, probes, first, probes), shortlists, context);
-    for (std::size_t i = 0; i < block.size() && !context.should_stop(); ++i) {
-      DescriptorMatch* found = out.data() + (block.begin + i) * k;
-      if (compares_in_full_) {
-        compare(block.row(i), refine(block.tail(i), shortlists[i].best(), compared), k, found);
-      } else {
-        rank(block.code(i), refine(block.tail(i), shortlists[i].best(), k), found);
-      }
-    }
   }
 
   // The `probes` lists of each query whose centres are nearest, the first `first` of them ahead.
@@ -267,18 +250,18 @@ class CodedIndex : public DescriptorIndex {
                     std::size_t probes,
                     std::size_t first,
                     std::vector<std::uint32_t>& chosen) const {
-    std::vector<CodeHit> hits(centres_.bias.size());
+    std::vector<CodeHit> hits(packed_centres_.bias.size());
     std::vector<std::int32_t> scores(sample_.bias.size());
-    std::vector<Candidate> candidates;
+    std::vector<CodeCandidate> candidates;
     for (std::size_t i = 0; i < block.size(); ++i) {
       candidates.clear();
       for (std::int32_t floor : {likely_floor(block.code(i), probes, scores), kLowest}) {
         if (candidates.size() >= probes) break;
         candidates.clear();
         const std::size_t count = code_kernels().above(block.code(i),
-                                                       centres_.bytes.data(),
-                                                       centres_.bias.data(),
-                                                       centres_.groups(),
+                                                       packed_centres_.bytes.data(),
+                                                       packed_centres_.bias.data(),
+                                                       packed_centres_.groups(),
                                                        floor,
                                                        hits.data());
         for (std::size_t h = 0; h < count; ++h) {
@@ -329,40 +312,56 @@ class CodedIndex : public DescriptorIndex {
     return wishes;
   }
 
+  // Compares the codes of one list after the other.
+  class ListReader {
+   public:
+    explicit ListReader(const Index& index) : index_(index), hits_(index.most_in_list_) {}
+
+    void read(const Block& block,
+              std::size_t list,
+              std::span<const std::uint32_t> queries,
+              std::vector<Shortlist>& shortlists) {
+      const std::size_t group = index_.list_start_[list];
+      const std::uint32_t* rows = index_.row_of_.data() + group * kCodeGroup;
+      for (const std::uint32_t query : queries) {
+        Shortlist& shortlist = shortlists[query];
+        const std::size_t count =
+            kernels_.above(block.code(query),
+                           index_.codes_.bytes.data() + group * kCodeGroup * kCodeLength,
+                           index_.codes_.bias.data() + group * kCodeGroup,
+                           index_.list_start_[list + 1] - group,
+                           shortlist.floor(),
+                           hits_.data());
+        for (std::size_t h = 0; h < count; ++h) {
+          const std::uint32_t row = rows[hits_[h].place];
+          if (row != kNoRow) shortlist.offer(make_candidate(hits_[h].score, row));
+        }
+      }
+    }
+
+   private:
+    const Index& index_;
+    const CodeKernels& kernels_ = code_kernels();
+    std::vector<CodeHit> hits_;
+  };
+
   void read_lists(const Block& block,
                   const Wishes& wishes,
                   std::vector<Shortlist>& shortlists,
                   const RunContext& context) const {
-    const CodeKernels& kernels = code_kernels();
-    std::vector<CodeHit> hits(most_in_list_);
+    ListReader reader(*this);
     for (std::size_t l = 0; l < lists() && !context.should_stop(); ++l) {
-      const std::size_t group = list_start_[l];
-      const std::uint32_t* rows = row_of_.data() + group * kCodeGroup;
-      for (std::uint32_t w = wishes.start[l]; w < wishes.start[l + 1]; ++w) {
-        Shortlist& shortlist = shortlists[wishes.queries[w]];
-        const std::size_t count =
-            kernels.above(block.code(wishes.queries[w]),
-                          codes_.bytes.data() + group * kCodeGroup * kCodeLength,
-                          codes_.bias.data() + group * kCodeGroup,
-                          list_start_[l + 1] - group,
-                          shortlist.floor(),
-                          hits.data());
-        for (std::size_t h = 0; h < count; ++h) {
-          if (rows[hits[h].place] != kNoRow) {
-            shortlist.offer(make_candidate(hits[h].score, rows[hits[h].place]));
-          }
-        }
-      }
+      reader.read(block, l, wishes.of(l), shortlists);
     }
   }
 
   // The best `most` of the candidates once their tails are counted in.
-  std::span<Candidate> refine(const std::int8_t* tail,
-                              std::span<Candidate> candidates,
-                              std::size_t most) const {
+  std::span<CodeCandidate> refine(const std::int8_t* tail,
+                                  std::span<CodeCandidate> candidates,
+                                  std::size_t most) const {
     constexpr std::size_t kAhead = 16;
     const CodeKernels& kernels = code_kernels();
-    const auto tail_of = [&](Candidate candidate) {
+    const auto tail_of = [&](CodeCandidate candidate) {
       return tails_.data() + std::size_t{row_of(candidate)} * kCodeLength;
     };
     for (std::size_t i = 0; i < std::min(kAhead, candidates.size()); ++i) {
@@ -384,7 +383,7 @@ class CodedIndex : public DescriptorIndex {
   }
 
   void compare(std::span<const float> query,
-               std::span<const Candidate> candidates,
+               std::span<const CodeCandidate> candidates,
                std::size_t k,
                DescriptorMatch* out) const {
     constexpr std::size_t kAhead = 2;
@@ -401,12 +400,14 @@ class CodedIndex : public DescriptorIndex {
   }
 
   // The nearest by code and tail alone. A score is |a|^2 + 256 sum(a) less the squared distance.
-  static void rank(const std::int8_t* code, std::span<Candidate> candidates, DescriptorMatch* out) {
+  static void rank(const std::int8_t* code,
+                   std::span<CodeCandidate> candidates,
+                   DescriptorMatch* out) {
     constexpr std::int32_t kOffset = 2 * 128;  // see CodeKernels
     std::int32_t at_zero = 0;
     for (std::size_t j = 0; j < kCodeLength; ++j) at_zero += code[j] * (code[j] + kOffset);
     std::sort(candidates.begin(), candidates.end(), std::greater<>());
-    for (const Candidate candidate : candidates) {
+    for (const CodeCandidate candidate : candidates) {
       const std::int32_t squared = std::max(at_zero - score_of(candidate), 0);
       *out++ = {row_of(candidate), dissimilarity_of_codes(squared)};
     }
@@ -419,18 +420,33 @@ class CodedIndex : public DescriptorIndex {
   std::vector<std::int8_t> tails_;       // by row
   std::vector<std::size_t> list_start_;  // the first group of each list, and the number of groups
   PackedCodes sample_;                   // of every kSampleStep-th centre
-  PackedCodes centres_;                  // of the lists
-  std::vector<std::size_t> first_row_;   // of each part
+  std::vector<std::int8_t> centres_;     // of the lists, until they are packed
+  PackedCodes packed_centres_;
+  std::vector<std::size_t> first_list_;         // of each part, and the number of lists
+  std::vector<std::size_t> first_row_;          // of each part
   std::vector<std::span<const float>> values_;  // of each part
   std::size_t size_ = 0;
   std::size_t most_in_list_ = 0;
 };
 
-}  // namespace
+CodedIndexMaker::CodedIndexMaker(const CodedSearchOptions& options, std::size_t rows)
+    : index_(std::make_unique<Index>(options)) {
+  index_->reserve(rows);
+}
+CodedIndexMaker::~CodedIndexMaker() = default;
 
-std::unique_ptr<DescriptorIndex> make_coded_index(std::span<const CodedPart> parts,
-                                                  const CodedSearchOptions& options) {
-  return std::make_unique<CodedIndex>(parts, options);
+void CodedIndexMaker::add(const CodedPart& part) { index_->add(part); }
+
+std::unique_ptr<CodedIndex> CodedIndexMaker::finish() {
+  index_->finish();
+  return std::move(index_);
+}
+
+std::unique_ptr<CodedIndex> make_coded_index(std::span<const CodedPart> parts,
+                                             const CodedSearchOptions& options) {
+  CodedIndexMaker maker(options);
+  for (const CodedPart& part : parts) maker.add(part);
+  return maker.finish();
 }
 
 }  // namespace landmarkdb

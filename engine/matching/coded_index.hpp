@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "engine/matching/descriptor_index.hpp"
 #include "engine/types/descriptor_codes.hpp"
@@ -27,15 +28,49 @@ struct CodedSearchOptions {
   double refined_a_neighbour = 8.0;
   std::size_t compared = 32;
   double compared_a_neighbour = 2.0;
+  // Without them a row takes 80 bytes instead of 144, ranks are those of the codes alone, and
+  // nothing is compared in full.
+  bool keeps_tails = true;
 };
 
 // Ranks by l2 distance. Finds most of the true neighbours; what it returns was compared in full. In
 // an index with parts of which only the codes are at hand nothing is: there the distance is that of
 // code and tail, a little less than the true one, the order that of the codes, and no descriptors
 // need to be kept.
-// Rows count on through the parts in their order. The same bytes on every machine. Takes 136 bytes
-// a row beside the parts. Throws Error{kInvalidArgument} for codes that do not fit their values.
-std::unique_ptr<DescriptorIndex> make_coded_index(std::span<const CodedPart> parts,
-                                                  const CodedSearchOptions& options = {});
+// Rows count on through the parts in their order. The same bytes on every machine.
+class CodedIndex : public DescriptorIndex {
+ public:
+  // The nearest among the rows of these parts alone (by their order, ascending), of which all codes
+  // are compared: what an index over just these parts that reads all of its lists finds. `out` and
+  // what is thrown as in search(); rows are those of the whole index.
+  virtual void search_parts(std::span<const std::size_t> parts,
+                            std::span<const float> queries,
+                            std::size_t k,
+                            std::vector<DescriptorMatch>& out,
+                            const RunContext& context) const = 0;
+  virtual bool has_tails() const = 0;
+};
+
+// Takes the parts one after another, so that they need not all be in memory beside the index.
+class CodedIndexMaker {
+ public:
+  // Room is made for so many rows at once.
+  explicit CodedIndexMaker(const CodedSearchOptions& options, std::size_t rows = 0);
+  CodedIndexMaker(CodedIndexMaker&&) = delete;
+  ~CodedIndexMaker();
+
+  // Throws Error{kInvalidArgument} for codes that do not fit their values.
+  void add(const CodedPart& part);
+  // Once, after the last part.
+  std::unique_ptr<CodedIndex> finish();
+
+ private:
+  class Index;
+  std::unique_ptr<Index> index_;
+};
+
+// Of all of these parts. Throws what CodedIndexMaker::add does.
+std::unique_ptr<CodedIndex> make_coded_index(std::span<const CodedPart> parts,
+                                             const CodedSearchOptions& options = {});
 
 }  // namespace landmarkdb

@@ -13,6 +13,9 @@ namespace {
 
 constexpr int kReachCells = 2;      // 10 cm in a room described at 5 cm
 constexpr double kWideCells = 3.0;  // 15 cm there
+// Half of what the wide grid takes, and knows the right place among others as well.
+constexpr double kOutlineCells = 4.0;
+constexpr int kOutlineReachCells = 1;
 constexpr std::size_t kTestPoints = 512;
 constexpr std::size_t kLayouts = 1;  // what is built has one frame of right angles as a rule
 
@@ -24,6 +27,20 @@ SurfaceGrid grid_of_scene(const SceneRecord& record, const RunContext& context) 
     if (error.field() != "voxel") throw;
     throw Error(error.code(), "scene '" + record.name + "': " + error.what(), error.field());
   }
+}
+
+// A grid of one point a cell of it.
+SurfaceGrid grid_of_thinned(const PreparedCloud& cloud,
+                            double cell_m,
+                            int reach_cells,
+                            const RunContext& context) {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+  for (const std::uint32_t i : uniform_keypoints(cloud, cell_m).index) {
+    points.push_back(cloud.points[i]);
+    normals.push_back(cloud.normals[i]);
+  }
+  return SurfaceGrid(points, normals, cell_m, reach_cells, context);
 }
 
 // Objects are small, and seen close by: all of their points count.
@@ -51,20 +68,15 @@ GridSize grid_size(std::span<const Eigen::Vector3f> points,
 }
 
 SurfaceGrid make_wide_grid(const PreparedCloud& cloud, const RunContext& context) {
-  const double cell_m = kWideCells * cloud.resolution_m;
-  std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;
-  for (const std::uint32_t i : uniform_keypoints(cloud, cell_m).index) {
-    points.push_back(cloud.points[i]);
-    normals.push_back(cloud.normals[i]);
-  }
-  return SurfaceGrid(points, normals, cell_m, kReachCells, context);
+  return grid_of_thinned(cloud, kWideCells * cloud.resolution_m, kReachCells, context);
 }
 
 Entry make_outline(CatalogEntry stored) {
   const PreparedCloud& cloud = stored.record->prepared;
   const double cell_m = cloud.resolution_m;
-  SurfaceGrid wide = cloud.size() > 0 ? make_wide_grid(cloud) : SurfaceGrid({}, {}, cell_m, 0);
+  SurfaceGrid wide = cloud.size() > 0
+                         ? grid_of_thinned(cloud, kOutlineCells * cell_m, kOutlineReachCells, {})
+                         : SurfaceGrid({}, {}, cell_m, 0);
   if (cloud.size() > 0) {
     auto slim = std::make_shared<SceneRecord>(*stored.record);
     slim->prepared.points = {};

@@ -52,7 +52,7 @@ SurfaceGrid make_wide_grid(const PreparedCloud& cloud, const RunContext& context
 Entry make_entry(CatalogEntry stored, const RunContext& context = {});
 
 // An entry of which no fine surface is in memory: its grid has the cells it will have, its record
-// keypoints and frames. The wide grid is there if the record given has points.
+// keypoints and frames. If the record given has points there is a wide grid, of cells larger still.
 Entry make_outline(CatalogEntry stored);
 
 // Every n-th point, so that about `count` are left; points of a thinned cloud lie evenly on the

@@ -46,7 +46,7 @@ DescriptorCodes blank_codes(std::size_t rows) {
 // In lists of what is alike, or, to be scanned, in order.
 DescriptorCodes codes_of(const Entry& entry, bool scanned, const RunContext& context) {
   const std::size_t rows = rows_of(entry);
-  if (!scanned && entry.stored.source != nullptr) {
+  if (entry.stored.source != nullptr) {
     const std::optional<SceneIndexBlob> stored = entry.stored.source->index(context);
     std::optional<DescriptorCodes> codes = stored ? codes_from(*stored, rows) : std::nullopt;
     if (codes) return *std::move(codes);
@@ -57,33 +57,44 @@ DescriptorCodes codes_of(const Entry& entry, bool scanned, const RunContext& con
   return scanned ? make_codes_in_order(values, context) : make_codes(values, context);
 }
 
-// Side by side, each by one thread, and a few at a time, so that progress is told between them.
-std::vector<DescriptorCodes> all_codes(const Entries& entries,
-                                       std::span<const std::size_t> chosen,
-                                       bool scanned,
-                                       const RunContext& context) {
+// Codes are made or read side by side, each entry's by one thread, and a few at a time: they are in
+// memory twice only for as long as they are added.
+std::unique_ptr<CodedIndex> make_index_of_codes(const Entries& entries,
+                                                std::span<const std::size_t> chosen,
+                                                std::size_t rows,
+                                                bool scanned,
+                                                const CodedSearchOptions& options,
+                                                const RunContext& context) {
   constexpr std::size_t kAtATime = 64;
-  if (chosen.size() == 1) return {codes_of(entries[chosen[0]], scanned, context)};
+  CodedIndexMaker maker(options, rows);
   RunContext alone = context;
-  alone.threads = 1;
-  alone.progress = nullptr;
-  std::vector<DescriptorCodes> codes(chosen.size());
+  if (chosen.size() > 1) {
+    alone.threads = 1;
+    alone.progress = nullptr;
+  }
   for (std::size_t first = 0; first < chosen.size(); first += kAtATime) {
     context.report("index", first, chosen.size());
-    const std::size_t count = std::min(kAtATime, chosen.size() - first);
-    parallel_chunks(count, context.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = first + begin; i < first + end; ++i) {
-        codes[i] = codes_of(entries[chosen[i]], scanned, alone);
+    std::vector<DescriptorCodes> codes(std::min(kAtATime, chosen.size() - first));
+    parallel_chunks(codes.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        codes[i] = codes_of(entries[chosen[first + i]], scanned, alone);
       }
     });
+    for (const DescriptorCodes& one : codes) maker.add({{}, &one});
   }
-  return codes;
+  return maker.finish();
 }
 
 // Many neighbours are asked for, and what proposes a pose need not be the very nearest: with 4 and
 // 8 tails read for each nothing else was found.
 CodedSearchOptions scan_options() {
   return {.list_share = 1.0, .refined = 32, .refined_a_neighbour = 2.0};
+}
+
+CodedSearchOptions options_for(const Level& level) {
+  if (level.scanned) return scan_options();
+  const bool narrowed = level.entries.size() > kAllPlaces && level.rows() > kMostRowsWithTails;
+  return {.keeps_tails = !narrowed};
 }
 
 }  // namespace
@@ -128,11 +139,23 @@ Level make_level(const Entries& entries,
     level.first_row.push_back(level.first_row.back() + rows_of(entries[entry]));
   }
   level.scanned = level.rows() <= most_scanned_rows;
-  const std::vector<DescriptorCodes> codes = all_codes(entries, chosen, level.scanned, context);
-  std::vector<CodedPart> parts;
-  for (const DescriptorCodes& one : codes) parts.push_back({{}, &one});
-  level.index = make_coded_index(parts, level.scanned ? scan_options() : CodedSearchOptions{});
+  level.index = make_index_of_codes(
+      entries, chosen, level.rows(), level.scanned, options_for(level), context);
   return level;
+}
+
+std::vector<std::vector<Correspondence>> sort_out_matches(const Level& level,
+                                                          std::span<const DescriptorMatch> found,
+                                                          std::size_t k) {
+  std::vector<std::vector<Correspondence>> by_entry(level.entries.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].index == DescriptorMatch::kNone) continue;
+    const std::size_t place = level.entry_of_row(found[i].index);
+    by_entry[place].push_back({static_cast<std::uint32_t>(i / k),
+                               static_cast<std::uint32_t>(found[i].index - level.first_row[place]),
+                               found[i].distance});
+  }
+  return by_entry;
 }
 
 std::vector<std::vector<std::size_t>> group_places(const Entries& entries) {

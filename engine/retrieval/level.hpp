@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "engine/base/run_context.hpp"
-#include "engine/matching/descriptor_index.hpp"
+#include "engine/matching/coded_index.hpp"
 #include "engine/retrieval/entries.hpp"
+#include "engine/types/correspondence.hpp"
 #include "engine/types/features.hpp"
 
 namespace landmarkdb {
@@ -19,7 +20,7 @@ struct Level {
   std::vector<std::size_t> entries;    // indices into the localizer's entries, ascending
   std::vector<std::size_t> first_row;  // of each entry, and the number of rows at the end
   // By l2 distance, from codes alone: the distances are those of the codes.
-  std::unique_ptr<DescriptorIndex> index;
+  std::unique_ptr<CodedIndex> index;
   bool scanned = true;  // every code is compared, not those of the nearest lists alone
 
   std::size_t rows() const { return first_row.back(); }
@@ -30,6 +31,15 @@ struct Level {
 // A level of up to so many rows is scanned: every code is compared, and its entries are kept in
 // memory whole. In more the nearest lists are cheaper by half and more (docs/performance.md).
 inline constexpr std::size_t kMostScannedRows = 65'536;
+
+// Up to so many places are all looked at closely; of more, those that seem likely
+// (narrow_places.hpp).
+inline constexpr std::size_t kAllPlaces = 16;
+
+// A level of more rows and places is searched to find out which places are worth a closer look, and
+// these by all of their codes: tails, as long as the codes, would show no other places
+// (docs/decisions/0025).
+inline constexpr std::size_t kMostRowsWithTails = std::size_t{1} << 20U;
 
 // How many descriptors the entry has, whether they are in memory or not.
 std::size_t rows_of(const Entry& entry);
@@ -52,6 +62,12 @@ Level make_level(const Entries& entries,
                  std::span<const std::size_t> chosen,
                  const RunContext& context = {},
                  std::size_t most_scanned_rows = kMostScannedRows);
+
+// What was found in the level's index, k neighbours a query, sorted out by entry, in the order of
+// its entries; `target` is a keypoint of the entry.
+std::vector<std::vector<Correspondence>> sort_out_matches(const Level& level,
+                                                          std::span<const DescriptorMatch> found,
+                                                          std::size_t k);
 
 // The descriptors of the level's entries one behind the other, read where they are not in memory.
 std::vector<float> level_values(const Entries& entries,

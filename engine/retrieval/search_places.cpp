@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "engine/base/error.hpp"
@@ -23,14 +24,15 @@ constexpr std::size_t kNeighboursAPlace = 20;
 constexpr std::size_t kMostNeighbours = 200;
 
 // A frame of bare walls has a few dozen keypoints: each then gets more neighbours, up to as many
-// proposals as a cluttered one makes.
+// proposals as a cluttered one makes in each place, or, of places that were found likely, in one.
 constexpr std::size_t kProposalsAPlace = 50'000;
 constexpr std::size_t kMostNeighboursOfFew = 400;
 
-std::size_t neighbours_for(std::size_t places, std::size_t keypoints) {
+std::size_t neighbours_for(std::size_t places, bool narrowed, std::size_t keypoints) {
   const std::size_t usual =
       std::min(kMostNeighbours, kNeighbours + kNeighboursAPlace * (places - 1));
-  const std::size_t affordable = places * kProposalsAPlace / std::max<std::size_t>(keypoints, 1);
+  const std::size_t affordable =
+      (narrowed ? 1 : places) * kProposalsAPlace / std::max<std::size_t>(keypoints, 1);
   return std::clamp(affordable, usual, kMostNeighboursOfFew);
 }
 
@@ -49,38 +51,79 @@ constexpr double kMostSpacingVoxelsOfPlace = 8.0;
 // resolution.
 constexpr std::size_t kFewestVoxels = 150;
 
+// The levels' own indexes are of codes, by l2; another is made when it is asked for.
+bool is_by_codes(const QueryOptions& options) {
+  return options.measure == Measure::kL2 && options.search == Search::kExact;
+}
+
+// Some places of a level, to be searched as if there were no others.
+struct AskedPlaces {
+  const Level& level;
+  std::vector<std::size_t> entries;  // ascending
+  bool narrowed = false;             // they are what seemed likely
+  bool in_index = true;              // the level's index will do
+
+  bool are_all() const { return entries.size() == level.entries.size(); }
+  // Their numbers among the level's entries.
+  std::vector<std::size_t> parts() const {
+    std::vector<std::size_t> parts;
+    for (std::size_t i = 0; i < level.entries.size(); ++i) {
+      if (std::binary_search(entries.begin(), entries.end(), level.entries[i])) parts.push_back(i);
+    }
+    return parts;
+  }
+};
+
 // The k nearest stored descriptors of each of the query's, sorted out by entry.
-void match_level(const SearchInput& input,
-                 const Level& level,
-                 const QueryView& view,
-                 SearchResult& result) {
+void match_places_of(const SearchInput& input,
+                     const AskedPlaces& asked,
+                     const QueryView& view,
+                     SearchResult& result) {
   const StageTimer timer(input.timings.match);
-  const std::size_t k = neighbours_for(level.entries.size(), view.descriptors.size());
+  const std::size_t k =
+      neighbours_for(asked.entries.size(), asked.narrowed, view.descriptors.size());
+  const std::vector<float>& queries = view.descriptors.values;
+  const bool by_codes = is_by_codes(input.options);
+  std::optional<Level> own;
+  if (!asked.are_all() && !(asked.in_index && by_codes)) {
+    own = make_level(input.entries, asked.entries, input.context);
+  }
+  const Level& level = own ? *own : asked.level;
   std::vector<DescriptorMatch> found;
-  // The level's own index is of codes, by l2; another is made when it is asked for.
-  std::shared_ptr<const DescriptorIndex> other;
-  if (input.options.measure != Measure::kL2 || input.options.search != Search::kExact) {
-    other = index_over(input, level);
+  if (!by_codes) {
+    index_over(input, level)->search(queries, k, found, input.context);
+  } else if (own || asked.are_all()) {
+    level.index->search(queries, k, found, input.context);
+  } else {
+    level.index->search_parts(asked.parts(), queries, k, found, input.context);
   }
-  (other ? *other : *level.index).search(view.descriptors.values, k, found, input.context);
-  std::vector<EntryMatches> by_entry(level.entries.size());
-  for (std::size_t i = 0; i < by_entry.size(); ++i) {
-    by_entry[i].entry = level.entries[i];
-    by_entry[i].view = &view;
-  }
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].index == DescriptorMatch::kNone) continue;
-    const std::size_t place = level.entry_of_row(found[i].index);
-    by_entry[place].putative.push_back(
-        {static_cast<std::uint32_t>(i / k),
-         static_cast<std::uint32_t>(found[i].index - level.first_row[place]),
-         found[i].distance});
-  }
-  for (EntryMatches& matches : by_entry) {
-    if (matches.putative.empty() || !input.wanted[matches.entry]) continue;
-    matches.counts.putative = static_cast<std::uint32_t>(matches.putative.size());
+  std::vector<std::vector<Correspondence>> pairs = sort_out_matches(level, found, k);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (pairs[i].empty() || !input.wanted[level.entries[i]]) continue;
+    EntryMatches matches;
+    matches.entry = level.entries[i];
+    matches.view = &view;
+    matches.counts.putative = static_cast<std::uint32_t>(pairs[i].size());
+    matches.putative = std::move(pairs[i]);
     result.matches.push_back(std::move(matches));
   }
+}
+
+std::size_t rows_of(const SearchInput& input, std::span<const std::size_t> asked) {
+  std::size_t rows = 0;
+  for (const std::size_t entry : asked) rows += rows_of(input.entries[entry]);
+  return rows;
+}
+
+std::size_t wanted_places(const SearchInput& input) {
+  std::size_t count = 0;
+  for (const Level& level : input.levels) {
+    count += static_cast<std::size_t>(
+        std::count_if(level.entries.begin(), level.entries.end(), [&](std::size_t e) {
+          return input.wanted[e];
+        }));
+  }
+  return count;
 }
 
 // Planes propose as many poses of a place as all its pairs do: they are tried in those places that
@@ -96,22 +139,13 @@ void choose_for_planes(std::vector<EntryMatches>& matches) {
   for (EntryMatches* one : order) one->by_planes = true;
 }
 
-// Leaves the places that are worth a closer look, and brings these into memory.
-void narrow(const SearchInput& input, SearchResult& result) {
-  std::vector<EntryMatches>& matches = result.matches;
-  if (matches.size() > kAllPlaces) {
-    const StageTimer timer(input.timings.pose);
-    std::vector<EntryMatches> kept;
-    for (const std::size_t m : best_places(place_scores(input, matches), kMostPlaces)) {
-      kept.push_back(std::move(matches[m]));
-    }
-    matches = std::move(kept);
-  }
+// Brings the places into memory.
+void load_places(const SearchInput& input, SearchResult& result) {
   const StageTimer timer(input.timings.load);
   std::vector<std::size_t> which;
-  for (const EntryMatches& one : matches) which.push_back(one.entry);
+  for (const EntryMatches& one : result.matches) which.push_back(one.entry);
   input.entries.load(which, SceneParts::kSurface, input.context);
-  std::erase_if(matches,
+  std::erase_if(result.matches,
                 [&](const EntryMatches& one) { return input.entries.is_damaged(one.entry); });
 }
 
@@ -176,6 +210,9 @@ double common_tolerance_m(const SearchInput& input, const Entry& entry) {
 }
 
 void match_places(const SearchInput& input, SearchResult& result) {
+  const bool all_closely = wanted_places(input) <= kAllPlaces;
+  const std::size_t most_of_level =
+      std::max(kMostPlacesALevel, kMostPlaces / std::max<std::size_t>(input.levels.size(), 1));
   for (const Level& level : input.levels) {
     std::vector<std::size_t> asked;
     std::copy_if(level.entries.begin(),
@@ -183,7 +220,6 @@ void match_places(const SearchInput& input, SearchResult& result) {
                  std::back_inserter(asked),
                  [&](std::size_t entry) { return input.wanted[entry]; });
     if (asked.empty()) continue;
-    const bool named = !input.options.scenes.empty() && asked.size() < level.entries.size();
     if (input.query.scale.spacing_m > kMostSpacingVoxelsOfPlace * level.options.voxel_m) {
       result.lost_at = "density";
       result.needs_voxel_m = input.query.scale.spacing_m / kMostSpacingVoxelsOfPlace;
@@ -191,18 +227,24 @@ void match_places(const SearchInput& input, SearchResult& result) {
     }
     const QueryView& view = input.views.at(query_features(level.options, input.options));
     if (view.prepared.size() < kFewestVoxels || view.descriptors.size() == 0) continue;
-    if (named) {
-      match_level(input, make_level(input.entries, asked, input.context), view, result);
-    } else {
-      match_level(input, level, view, result);
+    AskedPlaces places{level, std::move(asked)};
+    places.narrowed = !all_closely && places.entries.size() > most_of_level;
+    if (places.narrowed) {
+      places.entries = best_places(place_scores(input, level, view), most_of_level);
+    } else if (!input.options.scenes.empty()) {
+      // What is asked of named scenes must not depend on the others, so that it is not left to
+      // codes without tails.
+      places.in_index =
+          level.index->has_tails() && rows_of(input, places.entries) <= kMostScannedRows;
     }
+    match_places_of(input, places, view, result);
   }
 }
 
 void search_places(const SearchInput& input, SearchResult& result) {
   std::vector<Candidate> candidates;
   match_places(input, result);
-  narrow(input, result);
+  load_places(input, result);
   choose_for_planes(result.matches);
   const std::size_t places = std::max<std::size_t>(result.matches.size(), 1);
   const std::size_t settled_each = std::clamp(kSettled / places, kSettledAtLeast, kSettledAPlace);
