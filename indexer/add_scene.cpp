@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "engine/matching/code_bytes.hpp"
+#include "engine/retrieval/scene_index.hpp"
 #include "indexer/new_database.hpp"
 #include "store/names.hpp"
 #include "store/store.hpp"
@@ -67,7 +67,7 @@ AddResult add_scene(const AddRequest& request, const std::string& db, const RunC
   result.record =
       describe_scene(request.name, read_scans(request, context), request.options, context);
   result.stored = change_or_create(db, [&](Store& store) {
-    return store.insert(result.record, context, {make_scene_index, code_format()});
+    return store.insert(result.record, context, {make_scene_index, scene_index_format()});
   });
   return result;
 }

@@ -11,7 +11,7 @@
 
 #include "cli/help.hpp"
 #include "cli/table.hpp"
-#include "engine/matching/code_bytes.hpp"
+#include "engine/retrieval/scene_index.hpp"
 #include "indexer/add_model.hpp"
 #include "indexer/checked_names.hpp"
 #include "indexer/commands.hpp"
@@ -100,7 +100,7 @@ int run_import(const TransferArguments& arguments, const Program& program) {
   std::string name;
   const InsertResult stored = change_or_create(db, [&](Store& store) {
     const InsertResult result = store.import_scene(
-        arguments.file, job.context(), as_name, {make_scene_index, code_format()});
+        arguments.file, job.context(), as_name, {make_scene_index, scene_index_format()});
     for (const SceneSummary& scene : store.list_scenes()) {
       if (scene.id == result.scene_id) name = scene.name;
     }

@@ -8,9 +8,9 @@
 #include "cli/help.hpp"
 #include "cli/table.hpp"
 #include "engine/base/error.hpp"
-#include "engine/matching/code_bytes.hpp"
 #include "engine/mono/model_triples.hpp"
 #include "engine/mono/search_tables.hpp"
+#include "engine/retrieval/scene_index.hpp"
 #include "indexer/commands.hpp"
 #include "indexer/long_job.hpp"
 #include "indexer/scene_view.hpp"
@@ -27,7 +27,7 @@ std::string lines(const std::vector<std::string>& sentences) {
   return text;
 }
 
-SceneDeriver scene_deriver() { return {make_scene_index, code_format()}; }
+SceneDeriver scene_deriver() { return {make_scene_index, scene_index_format()}; }
 
 ModelDeriver model_deriver() { return {make_triples, make_model_index, model_index_format()}; }
 

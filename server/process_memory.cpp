@@ -5,6 +5,9 @@
 #include <system_error>
 
 #include <unistd.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 namespace landmarkdb {
 
@@ -14,6 +17,12 @@ std::uint64_t resident_bytes() {
   std::uint64_t resident_pages = 0;
   statm >> size_pages >> resident_pages;
   return statm ? resident_pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+void release_free_memory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
 }
 
 std::uint64_t file_bytes(const std::string& path) {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
-#include "engine/matching/code_bytes.hpp"
 #include "engine/retrieval/describe_scene.hpp"
+#include "engine/retrieval/scene_index.hpp"
 #include "server/change_database.hpp"
 #include "server/convert_scene.hpp"
 #include "store/names.hpp"
@@ -80,7 +80,7 @@ v1::SceneReply SceneAdmin::add(const v1::SceneAddRequest& request,
   SceneAddition addition = from_proto(request, allowance);
   const SceneRecord record = describe_scene(
       std::move(addition.name), std::move(addition.scans), addition.options, context);
-  store.insert(record, context, {make_scene_index, code_format()});
+  store.insert(record, context, {make_scene_index, scene_index_format()});
   put_in_service(options_, state_);
   return show(record.name);
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
+#include "server/process_memory.hpp"
 #include "store/store.hpp"
 
 namespace landmarkdb {
@@ -74,6 +75,7 @@ std::shared_ptr<const Served> build(const std::string& db_path,
     return previous;
   }
   served->localizer = std::make_shared<const Localizer>(catalog, context, options);
+  release_free_memory();
   served->generation = catalog->generation;
   served->scenes = catalog->entries.size() - served->localizer->damaged().size();
   for (const CatalogEntry& entry : catalog->entries) {

@@ -47,9 +47,8 @@ std::optional<SceneIndexBlob> derive_scene_index(const Segment& segment,
                                                  const SceneDeriver& deriver,
                                                  const RunContext& context) {
   if (!deriver.index) return std::nullopt;
-  const std::optional<std::vector<float>> values = descriptor_values(segment);
-  if (!values) return std::nullopt;
-  SceneIndexBlob index = deriver.index(*values, context);
+  SceneIndexBlob index =
+      deriver.index(decode_segment(segment, {}, "the scene to be indexed"), context);
   if (index.codes.size() > kMostBytes) return std::nullopt;
   return index;
 }

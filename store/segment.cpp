@@ -240,18 +240,6 @@ bool is_part(std::string_view array, SceneParts parts) {
   return parts == SceneParts::kWhole || array != kDescriptors;
 }
 
-std::optional<std::vector<float>> descriptor_values(const Segment& segment) {
-  for (std::size_t i = 0; i < segment.manifest.arrays.size(); ++i) {
-    const ArrayInfo& info = segment.manifest.arrays[i];
-    if (info.name != kDescriptors) continue;
-    if (info.dtype != DType::kFloat16 || info.shape.size() != 2 || info.shape[1] != kShotLength) {
-      return std::nullopt;
-    }
-    return unit_rows_from(segment.arrays[i], kShotLength);
-  }
-  return std::nullopt;
-}
-
 SceneRecord decode_segment(Segment segment,
                            std::string name,
                            const std::string& what,

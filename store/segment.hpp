@@ -48,10 +48,6 @@ SceneRecord outline_of(const Manifest& manifest, std::string name, const std::st
 // True for the arrays that decode_segment needs for these parts, and for all it does not know.
 bool is_part(std::string_view array, SceneParts parts);
 
-// The descriptors of a segment as decode_segment gives them, N x kShotLength; nothing where they
-// are not as they should be.
-std::optional<std::vector<float>> descriptor_values(const Segment& segment);
-
 // Throws Error{kDataLoss} when `bytes` are not the array that `info` describes.
 void verify_array(const ArrayInfo& info, std::span<const std::byte> bytes, const std::string& what);
 

@@ -75,10 +75,10 @@ struct DamagedScene {
 };
 using OnDamaged = std::function<void(const DamagedScene&)>;
 
-// How what is derived from a scene is made; the store keeps it but does not know how. `values`:
-// N x kShotLength, as they are read back from the database.
+// How what is derived from a scene is made; the store keeps it but does not know how. `record`: as
+// it is read back from the database, but for its name.
 struct SceneDeriver {
-  std::function<SceneIndexBlob(const std::vector<float>& values, const RunContext&)> index{};
+  std::function<SceneIndexBlob(const SceneRecord& record, const RunContext&)> index{};
   SceneIndexBlob index_format{};  // version and params of what `index` makes
 };
 

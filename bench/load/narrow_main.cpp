@@ -46,7 +46,8 @@ int run(const std::string& db, const SiteOptions& site, std::size_t places, std:
   std::vector<std::shared_ptr<const Entry>> base;
   for (CatalogEntry stored : catalog->entries) {
     stored.record = stored.source->load(SceneParts::kSurface, context);
-    base.push_back(std::make_shared<const Entry>(make_outline(std::move(stored))));
+    const PlaceOutline outline = make_place_outline(stored.record->prepared);
+    base.push_back(std::make_shared<const Entry>(make_outline(std::move(stored), outline)));
   }
   EntryCache cache(std::move(base), 0);
   const std::vector<Level> levels = make_levels(Entries(cache), context, 1);

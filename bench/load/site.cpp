@@ -12,8 +12,8 @@
 #include "datasets/sensor_poses.hpp"
 #include "datasets/subsample.hpp"
 #include "engine/base/error.hpp"
-#include "engine/matching/code_bytes.hpp"
 #include "engine/retrieval/describe_scene.hpp"
+#include "engine/retrieval/scene_index.hpp"
 #include "store/store.hpp"
 
 namespace landmarkdb::bench {
@@ -80,7 +80,8 @@ std::size_t fill_database(const std::string& path,
     if (stored.contains(place_name(i))) continue;
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     if (took.count() > most_seconds) break;
-    store.insert(describe_place(options, i, context), context, {make_scene_index, code_format()});
+    store.insert(
+        describe_place(options, i, context), context, {make_scene_index, scene_index_format()});
     stored.insert(place_name(i));
     ++made;
   }

@@ -80,6 +80,9 @@ class CodedIndexMaker::Index : public CodedIndex {
     if ((coded_only && rows > 0) || !options_.keeps_tails) compares_in_full_ = false;
     const std::string fault = fault_of_codes(*part.codes, rows);
     if (!fault.empty()) throw Error(ErrorCode::kInvalidArgument, "the index " + fault);
+    if (options_.keeps_tails && part.codes->tails.size() != rows * kCodeLength) {
+      throw Error(ErrorCode::kInvalidArgument, "the index has search codes without their tails");
+    }
     if (rows >= kNoRow - size_) {
       throw Error(ErrorCode::kInvalidArgument, "stored descriptors are 2^32 - 1 or more");
     }

@@ -204,7 +204,8 @@ float dissimilarity_of_codes(std::int32_t squared_distance) {
 std::string fault_of_codes(const DescriptorCodes& codes, std::size_t rows) {
   const std::size_t lists = codes.lists();
   if (codes.rows.size() != rows || codes.codes.size() != rows * kCodeLength ||
-      codes.tails.size() != rows * kCodeLength || codes.centres.size() != lists * kCodeLength) {
+      (!codes.tails.empty() && codes.tails.size() != rows * kCodeLength) ||
+      codes.centres.size() != lists * kCodeLength) {
     return "has search codes of " + std::to_string(codes.rows.size()) + " rows, " +
            std::to_string(codes.codes.size()) + " bytes and " + std::to_string(lists) +
            " lists for " + std::to_string(rows) + " descriptors";

@@ -14,6 +14,19 @@ namespace {
 
 using Order = std::span<std::uint32_t>;
 
+// Brings the `half` points that are lowest along the axis to the front.
+void halve(std::span<const Eigen::Vector3f> points,
+           Eigen::Index axis,
+           std::size_t half,
+           Order order) {
+  using Along = std::pair<float, std::uint32_t>;  // beside one another: compared again and again
+  std::vector<Along> along;
+  along.reserve(order.size());
+  for (const std::uint32_t i : order) along.emplace_back(points[i][axis], i);
+  std::nth_element(along.begin(), along.begin() + static_cast<std::ptrdiff_t>(half), along.end());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = along[i].second;
+}
+
 // Halves the points across their longest side until each part is a block; the parts stay in order.
 void split(std::span<const Eigen::Vector3f> points,
            Order order,
@@ -33,13 +46,7 @@ void split(std::span<const Eigen::Vector3f> points,
   Eigen::Index axis = 0;
   box.sizes().maxCoeff(&axis);
   const std::size_t half = order.size() / 2;
-  std::nth_element(order.begin(),
-                   order.begin() + static_cast<std::ptrdiff_t>(half),
-                   order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) {
-                     return points[a][axis] != points[b][axis] ? points[a][axis] < points[b][axis]
-                                                               : a < b;
-                   });
+  halve(points, axis, half, order);
   split(points, order.first(half), begin, blocks);
   split(points, order.subspan(half), begin + static_cast<std::uint32_t>(half), blocks);
 }

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
-#include "engine/features/structure_keypoints.hpp"
 
 namespace landmarkdb {
 
@@ -13,9 +12,6 @@ namespace {
 
 constexpr int kReachCells = 2;      // 10 cm in a room described at 5 cm
 constexpr double kWideCells = 3.0;  // 15 cm there
-// Half of what the wide grid takes, and knows the right place among others as well.
-constexpr double kOutlineCells = 4.0;
-constexpr int kOutlineReachCells = 1;
 constexpr std::size_t kTestPoints = 512;
 constexpr std::size_t kLayouts = 1;  // what is built has one frame of right angles as a rule
 
@@ -27,20 +23,6 @@ SurfaceGrid grid_of_scene(const SceneRecord& record, const RunContext& context) 
     if (error.field() != "voxel") throw;
     throw Error(error.code(), "scene '" + record.name + "': " + error.what(), error.field());
   }
-}
-
-// A grid of one point a cell of it.
-SurfaceGrid grid_of_thinned(const PreparedCloud& cloud,
-                            double cell_m,
-                            int reach_cells,
-                            const RunContext& context) {
-  std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;
-  for (const std::uint32_t i : uniform_keypoints(cloud, cell_m).index) {
-    points.push_back(cloud.points[i]);
-    normals.push_back(cloud.normals[i]);
-  }
-  return SurfaceGrid(points, normals, cell_m, reach_cells, context);
 }
 
 // Objects are small, and seen close by: all of their points count.
@@ -68,16 +50,14 @@ GridSize grid_size(std::span<const Eigen::Vector3f> points,
 }
 
 SurfaceGrid make_wide_grid(const PreparedCloud& cloud, const RunContext& context) {
-  return grid_of_thinned(cloud, kWideCells * cloud.resolution_m, kReachCells, context);
+  const double cell_m = kWideCells * cloud.resolution_m;
+  const PlaceOutline thinned = thinned_outline(cloud, cell_m);
+  return SurfaceGrid(thinned.points, thinned.normals, cell_m, kReachCells, context);
 }
 
-Entry make_outline(CatalogEntry stored) {
-  const PreparedCloud& cloud = stored.record->prepared;
-  const double cell_m = cloud.resolution_m;
-  SurfaceGrid wide = cloud.size() > 0
-                         ? grid_of_thinned(cloud, kOutlineCells * cell_m, kOutlineReachCells, {})
-                         : SurfaceGrid({}, {}, cell_m, 0);
-  if (cloud.size() > 0) {
+Entry make_outline(CatalogEntry stored, const PlaceOutline& outline) {
+  const double cell_m = stored.record->prepared.resolution_m;
+  if (stored.record->prepared.size() > 0) {
     auto slim = std::make_shared<SceneRecord>(*stored.record);
     slim->prepared.points = {};
     slim->prepared.normals = {};
@@ -87,7 +67,7 @@ Entry make_outline(CatalogEntry stored) {
   }
   return {.stored = std::move(stored),
           .grid = SurfaceGrid({}, {}, cell_m, 0),
-          .wide = std::move(wide),
+          .wide = outline_grid(outline, cell_m),
           .wide_sight = {},
           .planes = {},
           .test = {},
@@ -120,7 +100,8 @@ Entry make_entry(CatalogEntry stored, const RunContext& context) {
                     ? std::vector<PlaneLayout>{}
                     : lay_out_planes(
                           cloud.points, cloud.normals, plane_bin_m(cloud.resolution_m), kLayouts),
-      .test = select_test_points(cloud.points, cloud.normals, {}, kTestPoints, kSeed),
+      .test = is_object ? select_test_points(cloud.points, cloud.normals, {}, kTestPoints, kSeed)
+                        : TestPoints{},
       .scanned = {},
       .sight = sight_of(cloud, is_object),
       .centre = Eigen::Vector3d::Zero(),

@@ -13,6 +13,7 @@
 #include "engine/registration/scanned_space.hpp"
 #include "engine/registration/sight_surface.hpp"
 #include "engine/registration/surface_grid.hpp"
+#include "engine/retrieval/place_outline.hpp"
 #include "engine/types/scene_record.hpp"
 
 namespace landmarkdb {
@@ -51,9 +52,9 @@ SurfaceGrid make_wide_grid(const PreparedCloud& cloud, const RunContext& context
 // Throws what make_grid does, naming the scene, and what `context.check` does.
 Entry make_entry(CatalogEntry stored, const RunContext& context = {});
 
-// An entry of which no fine surface is in memory: its grid has the cells it will have, its record
-// keypoints and frames. If the record given has points there is a wide grid, of cells larger still.
-Entry make_outline(CatalogEntry stored);
+// An entry of which no surface but this is in memory: its grid has the cells it will have, its
+// record no points, and its wide grid is that of the outline.
+Entry make_outline(CatalogEntry stored, const PlaceOutline& outline = {});
 
 // Every n-th point, so that about `count` are left; points of a thinned cloud lie evenly on the
 // surface.

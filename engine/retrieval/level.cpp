@@ -6,9 +6,9 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/parallel.hpp"
-#include "engine/matching/code_bytes.hpp"
 #include "engine/matching/coded_index.hpp"
 #include "engine/matching/make_codes.hpp"
+#include "engine/retrieval/scene_index.hpp"
 
 namespace landmarkdb {
 
@@ -47,9 +47,8 @@ DescriptorCodes blank_codes(std::size_t rows) {
 DescriptorCodes codes_of(const Entry& entry, bool scanned, const RunContext& context) {
   const std::size_t rows = rows_of(entry);
   if (entry.stored.source != nullptr) {
-    const std::optional<SceneIndexBlob> stored = entry.stored.source->index(context);
-    std::optional<DescriptorCodes> codes = stored ? codes_from(*stored, rows) : std::nullopt;
-    if (codes) return *std::move(codes);
+    std::optional<SceneIndex> stored = scene_index_of(*entry.stored.source, rows, context);
+    if (stored) return std::move(stored->codes);
   }
   std::shared_ptr<const SceneRecord> held;
   const std::span<const float> values = values_of(entry, context, held);
@@ -64,6 +63,7 @@ std::unique_ptr<CodedIndex> make_index_of_codes(const Entries& entries,
                                                 std::size_t rows,
                                                 bool scanned,
                                                 const CodedSearchOptions& options,
+                                                const CodesAtHand& at_hand,
                                                 const RunContext& context) {
   constexpr std::size_t kAtATime = 64;
   CodedIndexMaker maker(options, rows);
@@ -77,7 +77,9 @@ std::unique_ptr<CodedIndex> make_index_of_codes(const Entries& entries,
     std::vector<DescriptorCodes> codes(std::min(kAtATime, chosen.size() - first));
     parallel_chunks(codes.size(), context.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        codes[i] = codes_of(entries[chosen[first + i]], scanned, alone);
+        const std::size_t entry = chosen[first + i];
+        std::optional<DescriptorCodes> given = at_hand ? at_hand(entry) : std::nullopt;
+        codes[i] = given ? *std::move(given) : codes_of(entries[entry], scanned, alone);
       }
     });
     for (const DescriptorCodes& one : codes) maker.add({{}, &one});
@@ -93,8 +95,7 @@ CodedSearchOptions scan_options() {
 
 CodedSearchOptions options_for(const Level& level) {
   if (level.scanned) return scan_options();
-  const bool narrowed = level.entries.size() > kAllPlaces && level.rows() > kMostRowsWithTails;
-  return {.keeps_tails = !narrowed};
+  return {.keeps_tails = keeps_tails(level.entries.size(), level.rows())};
 }
 
 }  // namespace
@@ -102,6 +103,10 @@ CodedSearchOptions options_for(const Level& level) {
 std::size_t Level::entry_of_row(std::size_t row) const {
   const auto above = std::upper_bound(first_row.begin(), first_row.end(), row);
   return static_cast<std::size_t>(above - first_row.begin()) - 1;
+}
+
+bool keeps_tails(std::size_t places, std::size_t rows) {
+  return places <= kAllPlaces || rows <= kMostRowsWithTails;
 }
 
 std::size_t rows_of(const Entry& entry) {
@@ -131,7 +136,8 @@ std::vector<float> level_values(const Entries& entries,
 Level make_level(const Entries& entries,
                  std::span<const std::size_t> chosen,
                  const RunContext& context,
-                 std::size_t most_scanned_rows) {
+                 std::size_t most_scanned_rows,
+                 const CodesAtHand& at_hand) {
   Level level{.options = {}, .entries = {}, .first_row = {0}, .index = {}};
   for (const std::size_t entry : chosen) {
     level.options = entries[entry].record().options;
@@ -140,7 +146,7 @@ Level make_level(const Entries& entries,
   }
   level.scanned = level.rows() <= most_scanned_rows;
   level.index = make_index_of_codes(
-      entries, chosen, level.rows(), level.scanned, options_for(level), context);
+      entries, chosen, level.rows(), level.scanned, options_for(level), at_hand, context);
   return level;
 }
 
@@ -175,11 +181,12 @@ std::vector<std::vector<std::size_t>> group_places(const Entries& entries) {
 
 std::vector<Level> make_levels(const Entries& entries,
                                const RunContext& context,
-                               std::size_t most_scanned_rows) {
+                               std::size_t most_scanned_rows,
+                               const CodesAtHand& at_hand) {
   std::vector<Level> levels;
   for (const std::vector<std::size_t>& group : group_places(entries)) {
     context.check("index");
-    levels.push_back(make_level(entries, group, context, most_scanned_rows));
+    levels.push_back(make_level(entries, group, context, most_scanned_rows, at_hand));
   }
   return levels;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +11,7 @@
 #include "engine/matching/coded_index.hpp"
 #include "engine/retrieval/entries.hpp"
 #include "engine/types/correspondence.hpp"
+#include "engine/types/descriptor_codes.hpp"
 #include "engine/types/features.hpp"
 
 namespace landmarkdb {
@@ -40,6 +43,11 @@ inline constexpr std::size_t kAllPlaces = 16;
 // these by all of their codes: tails, as long as the codes, would show no other places
 // (docs/decisions/0025).
 inline constexpr std::size_t kMostRowsWithTails = std::size_t{1} << 20U;
+bool keeps_tails(std::size_t places, std::size_t rows);
+
+// Gives away the codes of an entry that were read with something else of it; nothing where they
+// were not.
+using CodesAtHand = std::function<std::optional<DescriptorCodes>(std::size_t entry)>;
 
 // How many descriptors the entry has, whether they are in memory or not.
 std::size_t rows_of(const Entry& entry);
@@ -54,14 +62,16 @@ std::vector<std::vector<std::size_t>> group_places(const Entries& entries);
 // does.
 std::vector<Level> make_levels(const Entries& entries,
                                const RunContext& context = {},
-                               std::size_t most_scanned_rows = kMostScannedRows);
+                               std::size_t most_scanned_rows = kMostScannedRows,
+                               const CodesAtHand& at_hand = {});
 
 // The level of some of these entries alone (indices, ascending, all places described alike): what
 // is asked of named scenes must not depend on the others.
 Level make_level(const Entries& entries,
                  std::span<const std::size_t> chosen,
                  const RunContext& context = {},
-                 std::size_t most_scanned_rows = kMostScannedRows);
+                 std::size_t most_scanned_rows = kMostScannedRows,
+                 const CodesAtHand& at_hand = {});
 
 // What was found in the level's index, k neighbours a query, sorted out by entry, in the order of
 // its entries; `target` is a keypoint of the entry.

@@ -21,6 +21,7 @@
 #include "engine/retrieval/level.hpp"
 #include "engine/retrieval/list_correspondences.hpp"
 #include "engine/retrieval/query_view.hpp"
+#include "engine/retrieval/scene_index.hpp"
 #include "engine/retrieval/scene_view.hpp"
 #include "engine/retrieval/search.hpp"
 #include "engine/retrieval/verdict.hpp"
@@ -199,12 +200,44 @@ std::vector<std::size_t> kept_whole(const Entries& entries, std::size_t most_sca
   return whole;
 }
 
+// Of each entry, whether its level wants the tails of its codes.
+std::vector<bool> tails_kept(const Entries& entries) {
+  std::vector<bool> kept(entries.size(), true);
+  for (const std::vector<std::size_t>& group : group_places(entries)) {
+    std::size_t rows = 0;
+    for (const std::size_t i : group) rows += rows_of(entries[i]);
+    for (const std::size_t i : group) kept[i] = keeps_tails(group.size(), rows);
+  }
+  return kept;
+}
+
 // What the cache starts from: outlines with keypoints and wide grids where no more is wanted, all
 // else whole.
 struct Base {
   std::vector<std::shared_ptr<const Entry>> entries;
-  std::vector<std::string> damage;  // of each entry; empty where it is sound
+  std::vector<std::string> damage;                    // of each entry; empty where it is sound
+  std::vector<std::optional<DescriptorCodes>> codes;  // of each entry, where they were read
 };
+
+// Of a place that is read when it is looked at closely: what is stored with it for that, or, with
+// none, made from its points.
+void add_outline(CatalogEntry stored,
+                 bool with_tails,
+                 const RunContext& context,
+                 std::shared_ptr<const Entry>& entry,
+                 std::optional<DescriptorCodes>& codes) {
+  stored.record = stored.source->load(SceneParts::kKeypoints, context);
+  std::optional<SceneIndex> index =
+      scene_index_of(*stored.source, static_cast<std::size_t>(stored.keypoints), context);
+  if (index) {
+    codes = std::move(index->codes);
+    if (!with_tails) codes->tails = {};
+  } else {
+    stored.record = stored.source->load(SceneParts::kSurface, context);
+    index.emplace().outline = make_place_outline(stored.record->prepared);
+  }
+  entry = std::make_shared<const Entry>(make_outline(std::move(stored), index->outline));
+}
 
 Base make_base(const Catalog& catalog, std::size_t most_scanned_rows, const RunContext& context) {
   Base base;
@@ -220,6 +253,8 @@ Base make_base(const Catalog& catalog, std::size_t most_scanned_rows, const RunC
   EntryCache outlines(base.entries, 0);
   std::vector<bool> whole(catalog.entries.size(), false);
   for (const std::size_t i : kept_whole(Entries(outlines), most_scanned_rows)) whole[i] = true;
+  const std::vector<bool> with_tails = tails_kept(Entries(outlines));
+  base.codes.resize(catalog.entries.size());
   std::vector<std::size_t> to_read;
   for (std::size_t i = 0; i < catalog.entries.size(); ++i) {
     if (catalog.entries[i].source != nullptr) to_read.push_back(i);
@@ -230,11 +265,13 @@ Base make_base(const Catalog& catalog, std::size_t most_scanned_rows, const RunC
   for_each_entry(to_read, context, [&](std::size_t i) {
     CatalogEntry stored = catalog.entries[i];
     try {
-      stored.record =
-          stored.source->load(whole[i] ? SceneParts::kWhole : SceneParts::kSurface, alone);
-      if (whole[i]) stored.source = nullptr;  // there is nothing left to be read
-      base.entries[i] = std::make_shared<const Entry>(
-          whole[i] ? make_entry(std::move(stored), alone) : make_outline(std::move(stored)));
+      if (!whole[i]) {
+        add_outline(std::move(stored), with_tails[i], alone, base.entries[i], base.codes[i]);
+        return;
+      }
+      stored.record = stored.source->load(SceneParts::kWhole, alone);
+      stored.source = nullptr;  // there is nothing left to be read
+      base.entries[i] = std::make_shared<const Entry>(make_entry(std::move(stored), alone));
     } catch (const Error& error) {
       if (!is_damage(error)) throw;
       base.damage[i] = error.what();
@@ -262,7 +299,10 @@ Localizer::Localizer(std::shared_ptr<const Catalog> catalog,
       ++state->on_demand;
     }
   }
-  state->levels = make_levels(Entries(*state->entries), context, most_scanned_rows);
+  state->levels =
+      make_levels(Entries(*state->entries), context, most_scanned_rows, [&](std::size_t entry) {
+        return std::exchange(base.codes[entry], std::nullopt);
+      });
   state_ = std::move(state);
 }
 

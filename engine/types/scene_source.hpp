@@ -13,12 +13,12 @@ namespace landmarkdb {
 
 struct SceneRecord;
 
-// Codes of a scene's descriptors (engine/matching/code_bytes.hpp), derived from them: may be
-// deleted, and are then made anew.
+// What is kept of a scene beside it (engine/retrieval/scene_index.hpp), derived from it: may be
+// deleted, and is then made anew.
 struct SceneIndexBlob {
-  std::int64_t version = 0;  // of the layout
-  std::string params{};      // what they were made with, free text
-  std::vector<std::byte> codes{};
+  std::int64_t version = 0;        // of the layout
+  std::string params{};            // what they were made with, free text
+  std::vector<std::byte> codes{};  // and the rest
 
   bool is_made_like(const SceneIndexBlob& other) const {
     return version == other.version && params == other.params;
@@ -41,8 +41,7 @@ class SceneSource {
   // that is damaged or not there any more, Error{kUnavailable} where the file cannot be read now.
   virtual std::shared_ptr<const SceneRecord> load(SceneParts parts,
                                                   const RunContext& context) const = 0;
-  // The codes that are stored with it, their digest checked; nothing where there are none that are
-  // sound.
+  // What is stored with it, its digest checked; nothing where there is none that is sound.
   virtual std::optional<SceneIndexBlob> index(const RunContext& context) const = 0;
 };
 

@@ -13,8 +13,9 @@ using ::testing::IsEmpty;
 using testing::make_record;
 using ::testing::SizeIs;
 
-SceneIndexBlob index_of(const std::vector<float>& values, const RunContext&) {
-  return {3, "a maker", {std::byte{7}, static_cast<std::byte>(values.size() % 251)}};
+SceneIndexBlob index_of(const SceneRecord& record, const RunContext&) {
+  const std::size_t numbers = record.descriptors.values.size() + record.prepared.size();
+  return {3, "a maker", {std::byte{7}, static_cast<std::byte>(numbers % 251)}};
 }
 const SceneDeriver kDeriver{index_of, {3, "a maker", {}}};
 

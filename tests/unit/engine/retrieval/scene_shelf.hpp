@@ -23,10 +23,11 @@ class SceneShelf final : public SceneSource {
     part->descriptors.values.clear();
     return part;
   }
-  std::optional<SceneIndexBlob> index(const RunContext&) const override { return std::nullopt; }
+  std::optional<SceneIndexBlob> index(const RunContext&) const override { return stored_index; }
 
   mutable std::atomic<int> loads{0};
   std::atomic<bool> damaged{false};
+  std::optional<SceneIndexBlob> stored_index{};
 
  private:
   std::shared_ptr<const SceneRecord> whole_;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "engine/base/run_context.hpp"
+#include "engine/retrieval/place_outline.hpp"
+#include "engine/types/descriptor_codes.hpp"
+#include "engine/types/scene_record.hpp"
+#include "engine/types/scene_source.hpp"
+
+namespace landmarkdb {
+
+// What is stored beside a scene so that a server of many need not read it whole: derived from it.
+struct SceneIndex {
+  DescriptorCodes codes;
+  PlaceOutline outline;  // of objects: empty
+};
+
+// What of SceneIndexBlob this program writes and reads: its layout (schema/README.md) and how the
+// codes are made. No bytes.
+SceneIndexBlob scene_index_format();
+
+// Of a record as it is read back, little-endian, with the format above.
+SceneIndexBlob make_scene_index(const SceneRecord& record, const RunContext& context);
+
+// The index again; nothing where it is of another format, or damaged, or not of `rows`
+// descriptors.
+std::optional<SceneIndex> scene_index_from(const SceneIndexBlob& blob, std::size_t rows);
+
+// What is stored with a scene; nothing where there is none that is sound.
+std::optional<SceneIndex> scene_index_of(const SceneSource& source,
+                                         std::size_t rows,
+                                         const RunContext& context);
+
+}  // namespace landmarkdb
