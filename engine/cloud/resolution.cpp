@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/base/error.hpp"
+#include "engine/base/parallel.hpp"
 #include "engine/cloud/spatial_index.hpp"
 #include "engine/cloud/voxel_cells.hpp"
 
@@ -23,13 +24,13 @@ constexpr std::size_t kIndexWhole = 200'000;
 constexpr double kCellsAcross = 64.0;   // a piece of surface is a cell of this part of the extent
 constexpr std::size_t kNeighbour = 16;  // see surface_spacing
 
-double measure_extent(const std::vector<Eigen::Vector3f>& points) {
+double measure_extent(const std::vector<Eigen::Vector3f>& points, const RunContext& context) {
   constexpr double kCutOff = 0.01;  // of the points at each end of each axis
   const std::size_t step = points.size() / kLooked + 1;
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
-  std::vector<float> values;
-  for (int axis = 0; axis < 3; ++axis) {
-    values.clear();
+  parallel_each(3, context.threads, [&](std::size_t which) {
+    const auto axis = static_cast<Eigen::Index>(which);
+    std::vector<float> values;
     for (std::size_t i = 0; i < points.size(); i += step) values.push_back(points[i][axis]);
     const auto cut = static_cast<std::ptrdiff_t>(kCutOff * static_cast<double>(values.size()));
     std::nth_element(values.begin(), values.begin() + cut, values.end());
@@ -37,7 +38,7 @@ double measure_extent(const std::vector<Eigen::Vector3f>& points) {
     std::nth_element(values.begin(), values.end() - 1 - cut, values.end());
     size[axis] =
         static_cast<double>(values[values.size() - 1 - static_cast<std::size_t>(cut)]) - low;
-  }
+  });
   return size.norm();
 }
 
@@ -92,19 +93,20 @@ double median(std::vector<double> values) {
 double near_distance(const std::vector<Eigen::Vector3f>& points,
                      const VoxelCells& grid,
                      double cell_m,
-                     std::size_t k) {
-  std::vector<double> distances;
-  std::vector<float> squared;
-  for (const VoxelCell* cell : sample_cells(grid)) {
-    distances_around(points, grid, *cell, middle_point(grid, *cell), squared);
-    double distance_m = cell_m;
-    if (squared.size() >= k) {
+                     std::size_t k,
+                     const RunContext& context) {
+  const std::vector<const VoxelCell*> cells = sample_cells(grid);
+  std::vector<double> distances(cells.size(), cell_m);
+  parallel_chunks(cells.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> squared;
+    for (std::size_t i = begin; i < end; ++i) {
+      distances_around(points, grid, *cells[i], middle_point(grid, *cells[i]), squared);
+      if (squared.size() < k) continue;
       const auto kth = squared.begin() + static_cast<std::ptrdiff_t>(k - 1);
       std::nth_element(squared.begin(), kth, squared.end());
-      distance_m = std::sqrt(static_cast<double>(*kth));
+      distances[i] = std::sqrt(static_cast<double>(*kth));
     }
-    distances.push_back(distance_m);
-  }
+  });
   return median(std::move(distances));
 }
 
@@ -123,9 +125,10 @@ double far_distance(const std::vector<Eigen::Vector3f>& points,
 
 double sample_spacing(const std::vector<Eigen::Vector3f>& points,
                       const VoxelCells& grid,
-                      double cell_m) {
+                      double cell_m,
+                      const RunContext& context) {
   const std::size_t k = std::min(kNeighbour, points.size() - 1);
-  double distance_m = near_distance(points, grid, cell_m, k);
+  double distance_m = near_distance(points, grid, cell_m, k, context);
   if (distance_m >= cell_m && points.size() <= kIndexWhole) {
     distance_m = far_distance(points, grid, k);
   }
@@ -141,11 +144,11 @@ CloudScale measure_scale(const PointCloud& cloud, const RunContext& context) {
                     std::to_string(kFewestPoints));
   }
   CloudScale scale;
-  scale.extent_m = measure_extent(cloud.points);
+  scale.extent_m = measure_extent(cloud.points, context);
   if (!(scale.extent_m > 0.0) || !std::isfinite(scale.extent_m)) return scale;
   const double cell_m = scale.extent_m / kCellsAcross;
   scale.spacing_m =
-      sample_spacing(cloud.points, group_by_voxel(cloud.points, cell_m, context), cell_m);
+      sample_spacing(cloud.points, group_by_voxel(cloud.points, cell_m, context), cell_m, context);
   return scale;
 }
 

@@ -7,7 +7,9 @@
 #include <string>
 
 #include "engine/base/error.hpp"
+#include "engine/base/parallel.hpp"
 #include "engine/cloud/keep_points.hpp"
+#include "engine/cloud/sort_by_key.hpp"
 #include "engine/cloud/spatial_index.hpp"
 
 namespace landmarkdb {
@@ -28,7 +30,7 @@ double take_median(std::vector<double>& values) {
 }
 
 Bulk measure_bulk(const std::vector<Eigen::Vector3f>& points) {
-  constexpr std::size_t kLooked = 100'000;  // a median needs no more
+  constexpr std::size_t kLooked = 10'000;  // a median needs no more
   const std::size_t step = points.size() / kLooked + 1;
   Bulk bulk;
   Eigen::Vector3d half = Eigen::Vector3d::Zero();
@@ -47,41 +49,43 @@ Bulk measure_bulk(const std::vector<Eigen::Vector3f>& points) {
   return bulk;
 }
 
-// Exact positions seen so far: open addressing over point indices.
-class SeenPositions {
- public:
-  explicit SeenPositions(const std::vector<Eigen::Vector3f>& points)
-      : points_(points), slots_(std::bit_ceil(2 * points.size() + 2), kEmpty) {}
-
-  // True when no earlier point lies exactly where point `i` does.
-  bool insert(std::uint32_t i) {
-    const Eigen::Vector3f& p = points_[i];
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t slot = hash(p) & mask;; slot = (slot + 1) & mask) {
-      if (slots_[slot] == kEmpty) {
-        slots_[slot] = i;
-        return true;
-      }
-      if (points_[slots_[slot]] == p) return false;
-    }
+std::uint64_t hash(const Eigen::Vector3f& p) {
+  std::uint64_t h = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    h ^= std::bit_cast<std::uint32_t>(p[axis] + 0.0F);  // -0 and 0 are the same place
+    h *= 0x9e3779b97f4a7c15ULL;                         // 2^64 over the golden ratio
+    h ^= h >> 29U;
   }
+  return h * 0xbf58476d1ce4e5b9ULL;
+}
 
- private:
-  static constexpr std::uint32_t kEmpty = std::numeric_limits<std::uint32_t>::max();
-
-  static std::uint64_t hash(const Eigen::Vector3f& p) {
-    std::uint64_t h = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      h ^= std::bit_cast<std::uint32_t>(p[axis] + 0.0F);  // -0 and 0 are the same place
-      h *= 0x9e3779b97f4a7c15ULL;                         // 2^64 over the golden ratio
-      h ^= h >> 29U;
+// Drops those of the points that lie exactly where an earlier one does; returns how many.
+std::size_t drop_repeats(const std::vector<Eigen::Vector3f>& points,
+                         std::vector<std::uint32_t>& kept,
+                         const RunContext& context) {
+  constexpr int kHashBits = 22;  // two passes of the sort
+  constexpr int kPlaceBits = 32;
+  std::vector<std::uint64_t> words(kept.size());
+  parallel_chunks(kept.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      words[k] = hash(points[kept[k]]) >> (64 - kHashBits) << kPlaceBits | k;
     }
-    return h * 0xbf58476d1ce4e5b9ULL >> 16U;
+  });
+  sort_words(words, kPlaceBits, context);
+  constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> alike;  // of one hash, each at a place of its own
+  for (std::size_t w = 0; w < words.size(); ++w) {
+    if (w % kStep == 0) context.check("sanitise");
+    if (w == 0 || words[w] >> kPlaceBits != words[w - 1] >> kPlaceBits) alike.clear();
+    std::uint32_t& i = kept[words[w] & std::numeric_limits<std::uint32_t>::max()];
+    const bool repeats = std::any_of(alike.begin(), alike.end(), [&](std::uint32_t other) {
+      return points[other] == points[i];
+    });
+    if (!repeats) alike.push_back(i);
+    if (repeats) i = kDropped;
   }
-
-  const std::vector<Eigen::Vector3f>& points_;
-  std::vector<std::uint32_t> slots_;
-};
+  return std::erase(kept, kDropped);
+}
 
 bool is_unit(const Eigen::Vector3f& normal) {
   constexpr float kTolerance = 0.1F;  // rounded to one digit, a unit normal is still inside
@@ -164,7 +168,6 @@ CloudCounts sanitise(PointCloud& cloud, const RunContext& context) {
   counts.points = cloud.size();
   const Bulk bulk = measure_bulk(cloud.points);
   const double far_m = std::max(kFarAtLeast_m, kFarExtents * bulk.extent_m);
-  SeenPositions seen(cloud.points);
   std::vector<std::uint32_t> kept;
   kept.reserve(cloud.size());
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
@@ -174,12 +177,11 @@ CloudCounts sanitise(PointCloud& cloud, const RunContext& context) {
       ++counts.not_finite;
     } else if ((p.cast<double>() - bulk.centre).cwiseAbs().maxCoeff() > far_m) {
       ++counts.out_of_range;
-    } else if (!seen.insert(i)) {
-      ++counts.duplicates;
     } else {
       kept.push_back(i);
     }
   }
+  counts.duplicates = drop_repeats(cloud.points, kept, context);
   counts.used = kept.size();
   keep_points(cloud, kept);
   repair_normals(cloud.points, cloud.normals, context);
