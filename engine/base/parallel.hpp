@@ -50,4 +50,12 @@ void parallel_each(std::size_t n, int threads, const Body& body) {
   });
 }
 
+// The same in runs of `step`: `body(begin, end)`.
+template <typename Body>
+void parallel_runs(std::size_t n, std::size_t step, int threads, const Body& body) {
+  parallel_each((n + step - 1) / step, threads, [&](std::size_t run) {
+    body(run * step, std::min(n, (run + 1) * step));
+  });
+}
+
 }  // namespace landmarkdb

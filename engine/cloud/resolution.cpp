@@ -49,25 +49,52 @@ double surface_spacing(double distance_m, std::size_t k) {
   return distance_m * std::sqrt(std::numbers::pi / static_cast<double>(k));
 }
 
-// Squared distances from point `i` to the points of its cell and the 26 around it, itself left out.
-void distances_around(const std::vector<Eigen::Vector3f>& points,
-                      const VoxelCells& grid,
-                      const VoxelCell& cell,
-                      std::uint32_t i,
-                      std::vector<float>& squared) {
+// A little less than the squared distance from `p` to what a cell can hold.
+float squared_distance_to(const VoxelCell& cell, double cell_m, const Eigen::Vector3f& p) {
+  constexpr double kSlack = 1e-4;  // of a cell, for points on its faces
+  const Eigen::Vector3d low = cell_m * Eigen::Vector3d(static_cast<double>(cell.x),
+                                                       static_cast<double>(cell.y),
+                                                       static_cast<double>(cell.z));
+  const Eigen::Array3d before = low.array() - p.cast<double>().array();
+  const Eigen::Array3d beyond = before.max(-before - cell_m) - kSlack * cell_m;
+  return static_cast<float>(beyond.max(0.0).matrix().squaredNorm());
+}
+
+// The squared distance from point `i` of a cell to its k-th neighbour in that cell and the 26
+// around it; infinite where there are fewer. What is further off than k points of its own cell is
+// not looked into. `squared` is memory to work with.
+float kth_around(const std::vector<Eigen::Vector3f>& points,
+                 const VoxelCells& grid,
+                 double cell_m,
+                 const VoxelCell& own,
+                 std::uint32_t i,
+                 std::size_t k,
+                 std::vector<float>& squared) {
   squared.clear();
-  for (std::int64_t dz = -1; dz <= 1; ++dz) {
-    for (std::int64_t dy = -1; dy <= 1; ++dy) {
-      for (const VoxelCell& near :
-           find_row(grid, cell.x - 1, cell.x + 1, cell.y + dy, cell.z + dz)) {
-        for (std::uint32_t k = near.begin; k < near.end; ++k) {
-          if (grid.order[k] != i) {
-            squared.push_back((points[grid.order[k]] - points[i]).squaredNorm());
-          }
-        }
-      }
+  const auto add = [&](const VoxelCell& cell) {
+    for (std::uint32_t at = cell.begin; at < cell.end; ++at) {
+      const std::uint32_t other = grid.order[at];
+      if (other != i) squared.push_back((points[other] - points[i]).squaredNorm());
+    }
+  };
+  const auto kth = [&] {
+    if (squared.size() < k) return std::numeric_limits<float>::infinity();
+    const auto at = squared.begin() + static_cast<std::ptrdiff_t>(k - 1);
+    std::nth_element(squared.begin(), at, squared.end());
+    squared.resize(k);
+    return squared.back();
+  };
+  add(own);
+  const float reach = kth();
+  for (int row = 0; row < 9; ++row) {
+    const std::int64_t y = own.y + row % 3 - 1;
+    const std::int64_t z = own.z + row / 3 - 1;
+    for (const VoxelCell& cell : find_row(grid, own.x - 1, own.x + 1, y, z)) {
+      if (cell.begin == own.begin) continue;
+      if (squared_distance_to(cell, cell_m, points[i]) <= reach) add(cell);
     }
   }
+  return kth();
 }
 
 // One point of each of some cells, all over the surface.
@@ -100,11 +127,9 @@ double near_distance(const std::vector<Eigen::Vector3f>& points,
   parallel_chunks(cells.size(), context.threads, [&](std::size_t begin, std::size_t end) {
     std::vector<float> squared;
     for (std::size_t i = begin; i < end; ++i) {
-      distances_around(points, grid, *cells[i], middle_point(grid, *cells[i]), squared);
-      if (squared.size() < k) continue;
-      const auto kth = squared.begin() + static_cast<std::ptrdiff_t>(k - 1);
-      std::nth_element(squared.begin(), kth, squared.end());
-      distances[i] = std::sqrt(static_cast<double>(*kth));
+      const float found =
+          kth_around(points, grid, cell_m, *cells[i], middle_point(grid, *cells[i]), k, squared);
+      if (std::isfinite(found)) distances[i] = std::sqrt(static_cast<double>(found));
     }
   });
   return median(std::move(distances));

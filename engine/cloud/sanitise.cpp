@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <string>
 
 #include "engine/base/error.hpp"
-#include "engine/base/parallel.hpp"
 #include "engine/cloud/keep_points.hpp"
-#include "engine/cloud/sort_by_key.hpp"
 #include "engine/cloud/spatial_index.hpp"
 
 namespace landmarkdb {
@@ -59,32 +58,65 @@ std::uint64_t hash(const Eigen::Vector3f& p) {
   return h * 0xbf58476d1ce4e5b9ULL;
 }
 
-// Drops those of the points that lie exactly where an earlier one does; returns how many.
+// Set bits by number, of so many that few of a cloud's hashes share one.
+class Marks {
+ public:
+  bool test(std::uint64_t number) const { return (bits_[at(number)] & bit(number)) != 0; }
+  // Returns whether it was set before.
+  bool set(std::uint64_t number) {
+    std::uint64_t& word = bits_[at(number)];
+    const bool before = (word & bit(number)) != 0;
+    word |= bit(number);
+    return before;
+  }
+
+ private:
+  static constexpr int kBits = 23;  // 1 MiB stays in the second-level cache
+  static std::size_t at(std::uint64_t number) {
+    return static_cast<std::size_t>(number >> (64 - kBits) >> 6U);
+  }
+  static std::uint64_t bit(std::uint64_t number) {
+    return std::uint64_t{1} << (number >> (64 - kBits) & 63U);
+  }
+  std::vector<std::uint64_t> bits_ = std::vector<std::uint64_t>(std::size_t{1} << (kBits - 6));
+};
+
+// Drops those of the points that lie exactly where an earlier one does; returns how many. Most
+// share no mark with another, and are passed over.
 std::size_t drop_repeats(const std::vector<Eigen::Vector3f>& points,
                          std::vector<std::uint32_t>& kept,
                          const RunContext& context) {
-  constexpr int kHashBits = 22;  // two passes of the sort
-  constexpr int kPlaceBits = 32;
-  std::vector<std::uint64_t> words(kept.size());
-  parallel_chunks(kept.size(), context.threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      words[k] = hash(points[kept[k]]) >> (64 - kHashBits) << kPlaceBits | k;
-    }
-  });
-  sort_words(words, kPlaceBits, context);
+  Marks seen;
+  Marks seen_again;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    if (k % kStep == 0) context.check("sanitise");
+    const std::uint64_t h = hash(points[kept[k]]);
+    if (seen.set(h)) seen_again.set(h);
+  }
+  struct Marked {
+    std::uint64_t hash;
+    std::size_t place;  // in `kept`
+    auto operator<=>(const Marked&) const = default;
+  };
+  std::vector<Marked> marked;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    if (k % kStep == 0) context.check("sanitise");
+    const std::uint64_t h = hash(points[kept[k]]);
+    if (seen_again.test(h)) marked.push_back({h, k});
+  }
+  std::sort(marked.begin(), marked.end());
   constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> alike;  // of one hash, each at a place of its own
-  for (std::size_t w = 0; w < words.size(); ++w) {
-    if (w % kStep == 0) context.check("sanitise");
-    if (w == 0 || words[w] >> kPlaceBits != words[w - 1] >> kPlaceBits) alike.clear();
-    std::uint32_t& i = kept[words[w] & std::numeric_limits<std::uint32_t>::max()];
+  for (std::size_t m = 0; m < marked.size(); ++m) {
+    if (m == 0 || marked[m].hash != marked[m - 1].hash) alike.clear();
+    std::uint32_t& i = kept[marked[m].place];
     const bool repeats = std::any_of(alike.begin(), alike.end(), [&](std::uint32_t other) {
       return points[other] == points[i];
     });
     if (!repeats) alike.push_back(i);
     if (repeats) i = kDropped;
   }
-  return std::erase(kept, kDropped);
+  return marked.empty() ? 0 : std::erase(kept, kDropped);
 }
 
 bool is_unit(const Eigen::Vector3f& normal) {

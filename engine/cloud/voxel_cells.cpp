@@ -9,6 +9,8 @@
 #include <string>
 #include <tuple>
 
+#include <Eigen/Geometry>
+
 #include "engine/base/error.hpp"
 #include "engine/base/parallel.hpp"
 #include "engine/base/round_down.hpp"
@@ -48,19 +50,6 @@ struct Bounds {
   }
   int bits() const { return bits(0) + bits(1) + bits(2); }
 };
-
-// Of the cells of these points; a point further out is in no lower a cell.
-Bounds bounds_of(std::span<const Eigen::Vector3f> points,
-                 const std::vector<std::uint32_t>& which,
-                 double cells_per_m) {
-  Eigen::Vector3f low = points[which.front()];
-  Eigen::Vector3f high = low;
-  for (const std::uint32_t i : which) {
-    low = low.cwiseMin(points[i]);
-    high = high.cwiseMax(points[i]);
-  }
-  return {cell_of(low, cells_per_m), cell_of(high, cells_per_m)};
-}
 
 // Bits of the numbers below `count`.
 int index_bits(std::size_t count) { return static_cast<int>(std::bit_width(count - 1)); }
@@ -191,14 +180,19 @@ VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
                 "voxel grid: " + std::to_string(points.size()) + " points, want below 2^32");
   }
   const double cells_per_m = 1.0 / edge_m;
-  std::vector<std::uint32_t> finite;
-  finite.reserve(points.size());
+  std::vector<std::uint32_t> finite(points.size());
+  std::size_t count = 0;
+  Eigen::AlignedBox3f box;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i % kStep == 0) context.check("voxels");
-    if (points[i].allFinite()) finite.push_back(static_cast<std::uint32_t>(i));
+    if (!points[i].allFinite()) continue;
+    finite[count++] = static_cast<std::uint32_t>(i);
+    box.extend(points[i]);
   }
-  if (finite.empty()) return {};
-  const Bounds bounds = bounds_of(points, finite, cells_per_m);
+  if (count == 0) return {};
+  finite.resize(count);
+  // A point further out is in no lower a cell.
+  const Bounds bounds{cell_of(box.min(), cells_per_m), cell_of(box.max(), cells_per_m)};
   const bool fits = bounds.bits() + index_bits(points.size()) <= 64;
   return fits ? group_by_word(points, finite, cells_per_m, KeyLayout(bounds), context)
               : group_by_compare(points, finite, cells_per_m, context);
