@@ -8,6 +8,7 @@
 #include <string>
 
 #include "engine/base/error.hpp"
+#include "engine/base/parallel.hpp"
 #include "engine/cloud/keep_points.hpp"
 #include "engine/cloud/spatial_index.hpp"
 
@@ -86,11 +87,14 @@ class Marks {
 std::size_t drop_repeats(const std::vector<Eigen::Vector3f>& points,
                          std::vector<std::uint32_t>& kept,
                          const RunContext& context) {
+  std::vector<std::uint64_t> hashes(kept.size());
+  parallel_chunks(kept.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) hashes[k] = hash(points[kept[k]]);
+  });
+  context.check("sanitise");
   Marks seen;
   Marks seen_again;
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    if (k % kStep == 0) context.check("sanitise");
-    const std::uint64_t h = hash(points[kept[k]]);
+  for (const std::uint64_t h : hashes) {
     if (seen.set(h)) seen_again.set(h);
   }
   struct Marked {
@@ -100,9 +104,7 @@ std::size_t drop_repeats(const std::vector<Eigen::Vector3f>& points,
   };
   std::vector<Marked> marked;
   for (std::size_t k = 0; k < kept.size(); ++k) {
-    if (k % kStep == 0) context.check("sanitise");
-    const std::uint64_t h = hash(points[kept[k]]);
-    if (seen_again.test(h)) marked.push_back({h, k});
+    if (seen_again.test(hashes[k])) marked.push_back({hashes[k], k});
   }
   std::sort(marked.begin(), marked.end());
   constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
@@ -205,12 +207,11 @@ CloudCounts sanitise(PointCloud& cloud, const RunContext& context) {
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
     if (i % kStep == 0) context.check("sanitise");
     const Eigen::Vector3f& p = cloud.points[i];
-    if (!p.allFinite()) {
-      ++counts.not_finite;
-    } else if ((p.cast<double>() - bulk.centre).cwiseAbs().maxCoeff() > far_m) {
-      ++counts.out_of_range;
-    } else {
+    const Eigen::Array3d apart = (p.cast<double>() - bulk.centre).array().abs();
+    if (apart.x() <= far_m && apart.y() <= far_m && apart.z() <= far_m) {  // no comparison with NaN
       kept.push_back(i);
+    } else {
+      ++(p.allFinite() ? counts.out_of_range : counts.not_finite);
     }
   }
   counts.duplicates = drop_repeats(cloud.points, kept, context);
