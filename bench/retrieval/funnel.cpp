@@ -88,6 +88,7 @@ Funnel follow(const PointCloud& cloud,
                           .precise_normals = view.precise_normals};
     Assessed from_truth = assess_coarse(meeting, entry, query, truth);
     assess_fine(meeting, entry, query, from_truth);
+    assess_precisely(meeting, entry, query, from_truth);
     funnel.truth_score = from_truth.score;
     funnel.truth_drift_m = (from_truth.T_entry_sensor.translation() - truth.translation()).norm();
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <exception>
 #include <thread>
@@ -37,6 +38,24 @@ void parallel_chunks(std::size_t n, int threads, const Body& body) {
   for (const std::exception_ptr& error : errors) {
     if (error) std::rethrow_exception(error);
   }
+}
+
+// Runs `body(i)` for each of [0, n), the next one on whichever of the threads is free: for work of
+// which some takes longer. Otherwise as parallel_chunks.
+template <typename Body>
+void parallel_each(std::size_t n, int threads, const Body& body) {
+  std::atomic<std::size_t> next{0};
+  parallel_chunks(n, threads, [&](std::size_t, std::size_t) {
+    for (std::size_t i = next++; i < n; i = next++) body(i);
+  });
+}
+
+// The same in runs of `step`: `body(begin, end)`.
+template <typename Body>
+void parallel_runs(std::size_t n, std::size_t step, int threads, const Body& body) {
+  parallel_each((n + step - 1) / step, threads, [&](std::size_t run) {
+    body(run * step, std::min(n, (run + 1) * step));
+  });
 }
 
 }  // namespace landmarkdb

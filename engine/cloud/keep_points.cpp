@@ -7,7 +7,7 @@ namespace {
 
 template <typename T>
 void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
-  if (values.empty()) return;
+  if (values.empty() || values.size() == kept.size()) return;
   for (std::size_t k = 0; k < kept.size(); ++k) values[k] = values[kept[k]];
   values.resize(kept.size());
 }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kFewestNeighbours = 5;  // the point itself is one of them
 constexpr std::size_t kMostOfLine = 7;        // of which a far scanner's line has within the radius
-constexpr std::size_t kStep = 128;            // cells between two looks at the stop token
+constexpr std::size_t kStep = 64;             // cells between two looks at the stop token
 
 struct PlaneFit {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
@@ -116,11 +116,11 @@ void fit_planes(PointCloud& cloud,
   const auto radius = static_cast<float>(radius_m);
   cloud.normals.assign(cloud.size(), Eigen::Vector3f::Zero());
   const CellGrid grid(cloud.points, radius_m);
-  parallel_chunks(grid.cells(), context.threads, [&](std::size_t begin, std::size_t end) {
+  parallel_runs(grid.cells(), kStep, context.threads, [&](std::size_t begin, std::size_t end) {
+    if (context.should_stop()) return;
     GatheredPoints around;
     std::vector<Neighbour> neighbours;
     for (std::size_t i = begin; i < end; ++i) {
-      if ((i - begin) % kStep == 0 && context.should_stop()) return;
       fit_cell(cloud, radius, grid, grid.cell(i), index, around, neighbours);
     }
   });

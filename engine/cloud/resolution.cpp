@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/base/error.hpp"
+#include "engine/base/parallel.hpp"
 #include "engine/cloud/spatial_index.hpp"
 #include "engine/cloud/voxel_cells.hpp"
 
@@ -23,13 +24,13 @@ constexpr std::size_t kIndexWhole = 200'000;
 constexpr double kCellsAcross = 64.0;   // a piece of surface is a cell of this part of the extent
 constexpr std::size_t kNeighbour = 16;  // see surface_spacing
 
-double measure_extent(const std::vector<Eigen::Vector3f>& points) {
+double measure_extent(const std::vector<Eigen::Vector3f>& points, const RunContext& context) {
   constexpr double kCutOff = 0.01;  // of the points at each end of each axis
   const std::size_t step = points.size() / kLooked + 1;
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
-  std::vector<float> values;
-  for (int axis = 0; axis < 3; ++axis) {
-    values.clear();
+  parallel_each(3, context.threads, [&](std::size_t which) {
+    const auto axis = static_cast<Eigen::Index>(which);
+    std::vector<float> values;
     for (std::size_t i = 0; i < points.size(); i += step) values.push_back(points[i][axis]);
     const auto cut = static_cast<std::ptrdiff_t>(kCutOff * static_cast<double>(values.size()));
     std::nth_element(values.begin(), values.begin() + cut, values.end());
@@ -37,7 +38,7 @@ double measure_extent(const std::vector<Eigen::Vector3f>& points) {
     std::nth_element(values.begin(), values.end() - 1 - cut, values.end());
     size[axis] =
         static_cast<double>(values[values.size() - 1 - static_cast<std::size_t>(cut)]) - low;
-  }
+  });
   return size.norm();
 }
 
@@ -48,25 +49,52 @@ double surface_spacing(double distance_m, std::size_t k) {
   return distance_m * std::sqrt(std::numbers::pi / static_cast<double>(k));
 }
 
-// Squared distances from point `i` to the points of its cell and the 26 around it, itself left out.
-void distances_around(const std::vector<Eigen::Vector3f>& points,
-                      const VoxelCells& grid,
-                      const VoxelCell& cell,
-                      std::uint32_t i,
-                      std::vector<float>& squared) {
+// A little less than the squared distance from `p` to what a cell can hold.
+float squared_distance_to(const VoxelCell& cell, double cell_m, const Eigen::Vector3f& p) {
+  constexpr double kSlack = 1e-4;  // of a cell, for points on its faces
+  const Eigen::Vector3d low = cell_m * Eigen::Vector3d(static_cast<double>(cell.x),
+                                                       static_cast<double>(cell.y),
+                                                       static_cast<double>(cell.z));
+  const Eigen::Array3d before = low.array() - p.cast<double>().array();
+  const Eigen::Array3d beyond = before.max(-before - cell_m) - kSlack * cell_m;
+  return static_cast<float>(beyond.max(0.0).matrix().squaredNorm());
+}
+
+// The squared distance from point `i` of a cell to its k-th neighbour in that cell and the 26
+// around it; infinite where there are fewer. What is further off than k points of its own cell is
+// not looked into. `squared` is memory to work with.
+float kth_around(const std::vector<Eigen::Vector3f>& points,
+                 const VoxelCells& grid,
+                 double cell_m,
+                 const VoxelCell& own,
+                 std::uint32_t i,
+                 std::size_t k,
+                 std::vector<float>& squared) {
   squared.clear();
-  for (std::int64_t dz = -1; dz <= 1; ++dz) {
-    for (std::int64_t dy = -1; dy <= 1; ++dy) {
-      for (const VoxelCell& near :
-           find_row(grid, cell.x - 1, cell.x + 1, cell.y + dy, cell.z + dz)) {
-        for (std::uint32_t k = near.begin; k < near.end; ++k) {
-          if (grid.order[k] != i) {
-            squared.push_back((points[grid.order[k]] - points[i]).squaredNorm());
-          }
-        }
-      }
+  const auto add = [&](const VoxelCell& cell) {
+    for (std::uint32_t at = cell.begin; at < cell.end; ++at) {
+      const std::uint32_t other = grid.order[at];
+      if (other != i) squared.push_back((points[other] - points[i]).squaredNorm());
+    }
+  };
+  const auto kth = [&] {
+    if (squared.size() < k) return std::numeric_limits<float>::infinity();
+    const auto at = squared.begin() + static_cast<std::ptrdiff_t>(k - 1);
+    std::nth_element(squared.begin(), at, squared.end());
+    squared.resize(k);
+    return squared.back();
+  };
+  add(own);
+  const float reach = kth();
+  for (int row = 0; row < 9; ++row) {
+    const std::int64_t y = own.y + row % 3 - 1;
+    const std::int64_t z = own.z + row / 3 - 1;
+    for (const VoxelCell& cell : find_row(grid, own.x - 1, own.x + 1, y, z)) {
+      if (cell.begin == own.begin) continue;
+      if (squared_distance_to(cell, cell_m, points[i]) <= reach) add(cell);
     }
   }
+  return kth();
 }
 
 // One point of each of some cells, all over the surface.
@@ -92,19 +120,18 @@ double median(std::vector<double> values) {
 double near_distance(const std::vector<Eigen::Vector3f>& points,
                      const VoxelCells& grid,
                      double cell_m,
-                     std::size_t k) {
-  std::vector<double> distances;
-  std::vector<float> squared;
-  for (const VoxelCell* cell : sample_cells(grid)) {
-    distances_around(points, grid, *cell, middle_point(grid, *cell), squared);
-    double distance_m = cell_m;
-    if (squared.size() >= k) {
-      const auto kth = squared.begin() + static_cast<std::ptrdiff_t>(k - 1);
-      std::nth_element(squared.begin(), kth, squared.end());
-      distance_m = std::sqrt(static_cast<double>(*kth));
+                     std::size_t k,
+                     const RunContext& context) {
+  const std::vector<const VoxelCell*> cells = sample_cells(grid);
+  std::vector<double> distances(cells.size(), cell_m);
+  parallel_chunks(cells.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> squared;
+    for (std::size_t i = begin; i < end; ++i) {
+      const float found =
+          kth_around(points, grid, cell_m, *cells[i], middle_point(grid, *cells[i]), k, squared);
+      if (std::isfinite(found)) distances[i] = std::sqrt(static_cast<double>(found));
     }
-    distances.push_back(distance_m);
-  }
+  });
   return median(std::move(distances));
 }
 
@@ -123,9 +150,10 @@ double far_distance(const std::vector<Eigen::Vector3f>& points,
 
 double sample_spacing(const std::vector<Eigen::Vector3f>& points,
                       const VoxelCells& grid,
-                      double cell_m) {
+                      double cell_m,
+                      const RunContext& context) {
   const std::size_t k = std::min(kNeighbour, points.size() - 1);
-  double distance_m = near_distance(points, grid, cell_m, k);
+  double distance_m = near_distance(points, grid, cell_m, k, context);
   if (distance_m >= cell_m && points.size() <= kIndexWhole) {
     distance_m = far_distance(points, grid, k);
   }
@@ -141,11 +169,11 @@ CloudScale measure_scale(const PointCloud& cloud, const RunContext& context) {
                     std::to_string(kFewestPoints));
   }
   CloudScale scale;
-  scale.extent_m = measure_extent(cloud.points);
+  scale.extent_m = measure_extent(cloud.points, context);
   if (!(scale.extent_m > 0.0) || !std::isfinite(scale.extent_m)) return scale;
   const double cell_m = scale.extent_m / kCellsAcross;
   scale.spacing_m =
-      sample_spacing(cloud.points, group_by_voxel(cloud.points, cell_m, context), cell_m);
+      sample_spacing(cloud.points, group_by_voxel(cloud.points, cell_m, context), cell_m, context);
   return scale;
 }
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <string>
 
 #include "engine/base/error.hpp"
+#include "engine/base/parallel.hpp"
 #include "engine/cloud/keep_points.hpp"
 #include "engine/cloud/spatial_index.hpp"
 
@@ -28,7 +30,7 @@ double take_median(std::vector<double>& values) {
 }
 
 Bulk measure_bulk(const std::vector<Eigen::Vector3f>& points) {
-  constexpr std::size_t kLooked = 100'000;  // a median needs no more
+  constexpr std::size_t kLooked = 10'000;  // a median needs no more
   const std::size_t step = points.size() / kLooked + 1;
   Bulk bulk;
   Eigen::Vector3d half = Eigen::Vector3d::Zero();
@@ -47,41 +49,77 @@ Bulk measure_bulk(const std::vector<Eigen::Vector3f>& points) {
   return bulk;
 }
 
-// Exact positions seen so far: open addressing over point indices.
-class SeenPositions {
- public:
-  explicit SeenPositions(const std::vector<Eigen::Vector3f>& points)
-      : points_(points), slots_(std::bit_ceil(2 * points.size() + 2), kEmpty) {}
+std::uint64_t hash(const Eigen::Vector3f& p) {
+  std::uint64_t h = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    h ^= std::bit_cast<std::uint32_t>(p[axis] + 0.0F);  // -0 and 0 are the same place
+    h *= 0x9e3779b97f4a7c15ULL;                         // 2^64 over the golden ratio
+    h ^= h >> 29U;
+  }
+  return h * 0xbf58476d1ce4e5b9ULL;
+}
 
-  // True when no earlier point lies exactly where point `i` does.
-  bool insert(std::uint32_t i) {
-    const Eigen::Vector3f& p = points_[i];
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t slot = hash(p) & mask;; slot = (slot + 1) & mask) {
-      if (slots_[slot] == kEmpty) {
-        slots_[slot] = i;
-        return true;
-      }
-      if (points_[slots_[slot]] == p) return false;
-    }
+// Set bits by number, of so many that few of a cloud's hashes share one.
+class Marks {
+ public:
+  bool test(std::uint64_t number) const { return (bits_[at(number)] & bit(number)) != 0; }
+  // Returns whether it was set before.
+  bool set(std::uint64_t number) {
+    std::uint64_t& word = bits_[at(number)];
+    const bool before = (word & bit(number)) != 0;
+    word |= bit(number);
+    return before;
   }
 
  private:
-  static constexpr std::uint32_t kEmpty = std::numeric_limits<std::uint32_t>::max();
-
-  static std::uint64_t hash(const Eigen::Vector3f& p) {
-    std::uint64_t h = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      h ^= std::bit_cast<std::uint32_t>(p[axis] + 0.0F);  // -0 and 0 are the same place
-      h *= 0x9e3779b97f4a7c15ULL;                         // 2^64 over the golden ratio
-      h ^= h >> 29U;
-    }
-    return h * 0xbf58476d1ce4e5b9ULL >> 16U;
+  static constexpr int kBits = 23;  // 1 MiB stays in the second-level cache
+  static std::size_t at(std::uint64_t number) {
+    return static_cast<std::size_t>(number >> (64 - kBits) >> 6U);
   }
-
-  const std::vector<Eigen::Vector3f>& points_;
-  std::vector<std::uint32_t> slots_;
+  static std::uint64_t bit(std::uint64_t number) {
+    return std::uint64_t{1} << (number >> (64 - kBits) & 63U);
+  }
+  std::vector<std::uint64_t> bits_ = std::vector<std::uint64_t>(std::size_t{1} << (kBits - 6));
 };
+
+// Drops those of the points that lie exactly where an earlier one does; returns how many. Most
+// share no mark with another, and are passed over.
+std::size_t drop_repeats(const std::vector<Eigen::Vector3f>& points,
+                         std::vector<std::uint32_t>& kept,
+                         const RunContext& context) {
+  std::vector<std::uint64_t> hashes(kept.size());
+  parallel_chunks(kept.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) hashes[k] = hash(points[kept[k]]);
+  });
+  context.check("sanitise");
+  Marks seen;
+  Marks seen_again;
+  for (const std::uint64_t h : hashes) {
+    if (seen.set(h)) seen_again.set(h);
+  }
+  struct Marked {
+    std::uint64_t hash;
+    std::size_t place;  // in `kept`
+    auto operator<=>(const Marked&) const = default;
+  };
+  std::vector<Marked> marked;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    if (seen_again.test(hashes[k])) marked.push_back({hashes[k], k});
+  }
+  std::sort(marked.begin(), marked.end());
+  constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> alike;  // of one hash, each at a place of its own
+  for (std::size_t m = 0; m < marked.size(); ++m) {
+    if (m == 0 || marked[m].hash != marked[m - 1].hash) alike.clear();
+    std::uint32_t& i = kept[marked[m].place];
+    const bool repeats = std::any_of(alike.begin(), alike.end(), [&](std::uint32_t other) {
+      return points[other] == points[i];
+    });
+    if (!repeats) alike.push_back(i);
+    if (repeats) i = kDropped;
+  }
+  return marked.empty() ? 0 : std::erase(kept, kDropped);
+}
 
 bool is_unit(const Eigen::Vector3f& normal) {
   constexpr float kTolerance = 0.1F;  // rounded to one digit, a unit normal is still inside
@@ -164,22 +202,19 @@ CloudCounts sanitise(PointCloud& cloud, const RunContext& context) {
   counts.points = cloud.size();
   const Bulk bulk = measure_bulk(cloud.points);
   const double far_m = std::max(kFarAtLeast_m, kFarExtents * bulk.extent_m);
-  SeenPositions seen(cloud.points);
   std::vector<std::uint32_t> kept;
   kept.reserve(cloud.size());
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
     if (i % kStep == 0) context.check("sanitise");
     const Eigen::Vector3f& p = cloud.points[i];
-    if (!p.allFinite()) {
-      ++counts.not_finite;
-    } else if ((p.cast<double>() - bulk.centre).cwiseAbs().maxCoeff() > far_m) {
-      ++counts.out_of_range;
-    } else if (!seen.insert(i)) {
-      ++counts.duplicates;
-    } else {
+    const Eigen::Array3d apart = (p.cast<double>() - bulk.centre).array().abs();
+    if (apart.x() <= far_m && apart.y() <= far_m && apart.z() <= far_m) {  // no comparison with NaN
       kept.push_back(i);
+    } else {
+      ++(p.allFinite() ? counts.out_of_range : counts.not_finite);
     }
   }
+  counts.duplicates = drop_repeats(cloud.points, kept, context);
   counts.used = kept.size();
   keep_points(cloud, kept);
   repair_normals(cloud.points, cloud.normals, context);

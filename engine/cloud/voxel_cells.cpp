@@ -9,7 +9,10 @@
 #include <string>
 #include <tuple>
 
+#include <Eigen/Geometry>
+
 #include "engine/base/error.hpp"
+#include "engine/base/parallel.hpp"
 #include "engine/base/round_down.hpp"
 #include "engine/cloud/sort_by_key.hpp"
 
@@ -38,24 +41,18 @@ Cell cell_of(const Eigen::Vector3f& p, double cells_per_m) {
 }
 
 struct Bounds {
-  Cell low{std::numeric_limits<std::int64_t>::max(),
-           std::numeric_limits<std::int64_t>::max(),
-           std::numeric_limits<std::int64_t>::max()};
-  Cell high{std::numeric_limits<std::int64_t>::min(),
-            std::numeric_limits<std::int64_t>::min(),
-            std::numeric_limits<std::int64_t>::min()};
+  Cell low{};
+  Cell high{};
 
-  void add(const Cell& cell) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], cell[axis]);
-      high[axis] = std::max(high[axis], cell[axis]);
-    }
-  }
   int bits(std::size_t axis) const {
     return static_cast<int>(std::bit_width(static_cast<std::uint64_t>(high[axis]) -
                                            static_cast<std::uint64_t>(low[axis])));
   }
+  int bits() const { return bits(0) + bits(1) + bits(2); }
 };
+
+// Bits of the numbers below `count`.
+int index_bits(std::size_t count) { return static_cast<int>(std::bit_width(count - 1)); }
 
 // A cell's numbers, counted from the lowest, one above the other in 64 bits, x lowest.
 class KeyLayout {
@@ -94,42 +91,53 @@ class KeyLayout {
 };
 
 // Makes cells of the items' runs of one key; `cell_of` turns a key into its cell.
-template <typename Item, typename CellOf>
+template <typename Item, typename IndexOf, typename KeyOf, typename CellOf>
 VoxelCells group_sorted(const std::vector<Item>& items,
+                        const IndexOf& index_of,
+                        const KeyOf& key_of,
                         const CellOf& cell_of,
                         const RunContext& context) {
   VoxelCells result;
   result.order.reserve(items.size());
   for (std::uint32_t k = 0; k < items.size(); ++k) {
     if (k % kStep == 0) context.check("voxels");
-    result.order.push_back(items[k].index);
-    if (k > 0 && items[k].key == items[k - 1].key) {
+    result.order.push_back(index_of(items[k]));
+    if (k > 0 && key_of(items[k]) == key_of(items[k - 1])) {
       result.cells.back().end = k + 1;
     } else {
-      const Cell cell = cell_of(items[k].key);
+      const Cell cell = cell_of(key_of(items[k]));
       result.cells.push_back({cell[0], cell[1], cell[2], k, k + 1});
     }
   }
   return result;
 }
 
-VoxelCells group_by_key(std::span<const Eigen::Vector3f> points,
-                        const std::vector<std::uint32_t>& finite,
-                        double cells_per_m,
-                        const Bounds& bounds,
-                        const RunContext& context) {
-  const KeyLayout layout(bounds);
-  std::vector<Keyed> items;
-  items.reserve(finite.size());
-  for (const std::uint32_t i : finite) {
-    items.push_back({layout.key_of(cell_of(points[i], cells_per_m)), i});
-  }
-  sort_by_key(items, context);
+// Each word is a cell's key above a point's index.
+VoxelCells group_by_word(std::span<const Eigen::Vector3f> points,
+                         const std::vector<std::uint32_t>& finite,
+                         double cells_per_m,
+                         const KeyLayout& layout,
+                         const RunContext& context) {
+  const int shift = index_bits(points.size());
+  std::vector<std::uint64_t> words(finite.size());
+  parallel_chunks(finite.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint64_t key = layout.key_of(cell_of(points[finite[k]], cells_per_m));
+      words[k] = (key << shift) | finite[k];
+    }
+  });
+  sort_words(words, shift, context);
   return group_sorted(
-      items, [&](std::uint64_t key) { return layout.cell_of(key); }, context);
+      words,
+      [&](std::uint64_t word) {
+        return static_cast<std::uint32_t>(word & ((std::uint64_t{1} << shift) - 1));
+      },
+      [&](std::uint64_t word) { return word >> shift; },
+      [&](std::uint64_t key) { return layout.cell_of(key); },
+      context);
 }
 
-// For extents whose cell numbers do not fit one 64-bit key together.
+// For extents whose cell numbers and a point's index do not fit 64 bits together.
 VoxelCells group_by_compare(std::span<const Eigen::Vector3f> points,
                             const std::vector<std::uint32_t>& finite,
                             double cells_per_m,
@@ -148,6 +156,8 @@ VoxelCells group_by_compare(std::span<const Eigen::Vector3f> points,
   std::sort(items.begin(), items.end());
   return group_sorted(
       items,
+      [](const Item& item) { return item.index; },
+      [](const Item& item) { return item.key; },
       [](const Cell& key) {
         return Cell{key[2], key[1], key[0]};
       },
@@ -170,18 +180,21 @@ VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
                 "voxel grid: " + std::to_string(points.size()) + " points, want below 2^32");
   }
   const double cells_per_m = 1.0 / edge_m;
-  std::vector<std::uint32_t> finite;
-  finite.reserve(points.size());
-  Bounds bounds;
+  std::vector<std::uint32_t> finite(points.size());
+  std::size_t count = 0;
+  Eigen::AlignedBox3f box;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i % kStep == 0) context.check("voxels");
     if (!points[i].allFinite()) continue;
-    finite.push_back(static_cast<std::uint32_t>(i));
-    bounds.add(cell_of(points[i], cells_per_m));
+    finite[count++] = static_cast<std::uint32_t>(i);
+    box.extend(points[i]);
   }
-  if (finite.empty()) return {};
-  const bool fits = bounds.bits(0) + bounds.bits(1) + bounds.bits(2) <= 64;
-  return fits ? group_by_key(points, finite, cells_per_m, bounds, context)
+  if (count == 0) return {};
+  finite.resize(count);
+  // A point further out is in no lower a cell.
+  const Bounds bounds{cell_of(box.min(), cells_per_m), cell_of(box.max(), cells_per_m)};
+  const bool fits = bounds.bits() + index_bits(points.size()) <= 64;
+  return fits ? group_by_word(points, finite, cells_per_m, KeyLayout(bounds), context)
               : group_by_compare(points, finite, cells_per_m, context);
 }
 

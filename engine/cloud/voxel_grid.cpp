@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "engine/base/parallel.hpp"
 #include "engine/cloud/voxel_cells.hpp"
 
 namespace landmarkdb {
@@ -41,26 +42,29 @@ std::array<std::uint8_t, 3> mean_colour(const std::vector<std::array<std::uint8_
 }  // namespace
 
 PointCloud thin(const PointCloud& cloud, double voxel_m, const RunContext& context) {
-  constexpr std::size_t kStep = 16'384;  // cells between two looks at the stop token
   const VoxelCells grid = group_by_voxel(cloud.points, voxel_m, context);
+  const std::size_t cells = grid.cells.size();
   PointCloud thinned;
   thinned.origin = cloud.origin;
   thinned.viewpoints = cloud.viewpoints;
-  thinned.points.reserve(grid.cells.size());
-  if (!cloud.normals.empty()) thinned.normals.reserve(grid.cells.size());
-  if (!cloud.colours.empty()) thinned.colours.reserve(grid.cells.size());
-  if (!cloud.viewpoint_index.empty()) thinned.viewpoint_index.reserve(grid.cells.size());
-  for (const VoxelCell& cell : grid.cells) {
-    const auto which =
-        std::span<const std::uint32_t>(grid.order).subspan(cell.begin, cell.end - cell.begin);
-    if (thinned.points.size() % kStep == 0) context.check("voxels");
-    thinned.points.push_back(mean(cloud.points, which));
-    if (!cloud.normals.empty()) thinned.normals.push_back(mean_normal(cloud.normals, which));
-    if (!cloud.colours.empty()) thinned.colours.push_back(mean_colour(cloud.colours, which));
-    if (!cloud.viewpoint_index.empty()) {
-      thinned.viewpoint_index.push_back(cloud.viewpoint_index[which[0]]);
+  thinned.points.resize(cells);
+  thinned.normals.resize(cloud.normals.empty() ? 0 : cells);
+  thinned.colours.resize(cloud.colours.empty() ? 0 : cells);
+  thinned.viewpoint_index.resize(cloud.viewpoint_index.empty() ? 0 : cells);
+  parallel_chunks(cells, context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const VoxelCell& cell = grid.cells[i];
+      const auto which =
+          std::span<const std::uint32_t>(grid.order).subspan(cell.begin, cell.end - cell.begin);
+      thinned.points[i] = mean(cloud.points, which);
+      if (!cloud.normals.empty()) thinned.normals[i] = mean_normal(cloud.normals, which);
+      if (!cloud.colours.empty()) thinned.colours[i] = mean_colour(cloud.colours, which);
+      if (!cloud.viewpoint_index.empty()) {
+        thinned.viewpoint_index[i] = cloud.viewpoint_index[which[0]];
+      }
     }
-  }
+  });
+  context.check("voxels");
   return thinned;
 }
 

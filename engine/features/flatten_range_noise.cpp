@@ -95,14 +95,15 @@ void flatten_range_noise(PreparedCloud& cloud,
   flat.origin = cloud.origin;
   flat.viewpoints = cloud.viewpoints;
   flat.viewpoint_index = cloud.viewpoint_index;
-  parallel_chunks(grid.cells(), context.threads, [&](std::size_t begin, std::size_t end) {
+  const auto flatten = [&](std::size_t begin, std::size_t end) {
+    context.check("preprocess");
     GatheredPoints gathered;
     for (std::size_t i = begin; i < end; ++i) {
-      if ((i - begin) % kCellsAtATime == 0) context.check("preprocess");
       flatten_cell(task, grid, grid.cell(i), gathered, flat);
     }
-  });
-  PointCloud thinned = thin(flat, cloud.resolution_m);
+  };
+  parallel_runs(grid.cells(), kCellsAtATime, context.threads, flatten);
+  PointCloud thinned = thin(flat, cloud.resolution_m, context);
   cloud.points = std::move(thinned.points);
   cloud.normals = std::move(thinned.normals);
   cloud.viewpoint_index = std::move(thinned.viewpoint_index);

@@ -75,19 +75,21 @@ IcpResult refine_icp(const SurfaceGrid& target,
   IcpResult result;
   result.T_target_source = T_target_source;
   double scale_cells = options.start_scale_cells;
-  // While the scale shrinks some hundreds of points show the way as well as all.
+  // Until its steps are short some hundreds of points show the way as well as all.
   constexpr std::size_t kEnoughOnTheWay = 800;
+  constexpr double kShort = 3.0;  // times a step that it stops at
+  constexpr int kAtLeast = 8;     // iterations with all points, where the steps stay long
   const std::size_t stride = source.size() / kEnoughOnTheWay;
   const PointGroups all(source, source_normals);
   const PointGroups fewer =
       stride > 1 ? PointGroups(source, source_normals, stride) : PointGroups();
-  const PointGroups& on_the_way = stride > 1 ? fewer : all;
+  bool with_all = stride <= 1;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     Eigen::Isometry3d& T = result.T_target_source;
     const Eigen::Vector3d centre = T * centre_source;
     const bool at_end = scale_cells <= options.end_scale_cells * 1.001;
     const PlaneSums sum = accumulate(target,
-                                     at_end ? all : on_the_way,
+                                     with_all ? all : fewer,
                                      T,
                                      centre,
                                      scale_cells * cell,
@@ -96,11 +98,14 @@ IcpResult refine_icp(const SurfaceGrid& target,
     const Vector6d x = solve_observable(sum.A, sum.b, length);
     T.linear() = nearest_rotation(rotation_from_vector(x.tail<3>()) * T.linear());
     T.translation() = centre + x.head<3>() - T.linear() * centre_source;
-    if (at_end && x.head<3>().norm() < options.stop_translation_cells * cell &&
-        x.tail<3>().norm() < options.stop_rotation_rad) {
+    const double step = std::max(x.head<3>().norm() / (options.stop_translation_cells * cell),
+                                 x.tail<3>().norm() / options.stop_rotation_rad);
+    if (at_end && with_all && step < 1.0) {
       result.converged = true;
       break;
     }
+    with_all =
+        with_all || (at_end && step < kShort) || iteration + kAtLeast >= options.max_iterations;
     constexpr double kAnneal = 0.8;  // per iteration: from start to end in about six
     scale_cells = std::max(options.end_scale_cells, scale_cells * kAnneal);
   }

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kLanes = PointGroups::kLanes;
 typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
+typedef float Eights __attribute__((vector_size(8 * sizeof(float))));
 typedef std::int32_t Ints __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
 #define LANDMARKDB_KERNEL_BODY "engine/registration/plane_pairs_body.hpp"

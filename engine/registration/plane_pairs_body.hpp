@@ -49,6 +49,38 @@ LANDMARKDB_INLINE void find_in_table(const SurfaceGrid::TableView& view,
   }
 }
 
+// The points and normals of eight surfels, x y z of each, lane by lane: the matrix of them, with
+// two columns of nothing, turned about its diagonal.
+LANDMARKDB_INLINE void load_surfels(const Surfel* surfels,
+                                    const std::uint32_t* stored,
+                                    Eights* numbers) {
+  Eights row[8];
+  for (int i = 0; i < 8; ++i) __builtin_memcpy(&row[i], surfels + stored[i], sizeof row[i]);
+  Eights ones[8];  // of two rows by turns: numbers 0, 1, 4, 5, then 2, 3, 6, 7
+  for (int i = 0; i < 8; i += 2) {
+    ones[i] = __builtin_shufflevector(row[i], row[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    ones[i + 1] = __builtin_shufflevector(row[i], row[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  Eights fours[8];  // of four rows: numbers 0 and 4, 1 and 5, 2 and 6, 3 and 7
+  for (int i = 0; i < 8; i += 4) {
+    for (int k = 0; k < 2; ++k) {
+      const Eights a = ones[i + k], b = ones[i + k + 2];
+      fours[i + 2 * k] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+      fours[i + 2 * k + 1] = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  }
+  for (int i = 0; i < 4; ++i) {
+    numbers[i] = __builtin_shufflevector(fours[i], fours[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+  }
+  for (int i = 0; i < 2; ++i) {
+    numbers[i + 4] = __builtin_shufflevector(fours[i], fours[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+LANDMARKDB_INLINE Floats side_by_side(Eights low, Eights high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
 LANDMARKDB_INLINE Met meet(const SurfaceGrid& target,
                            const SurfaceGrid::TableView& view,
                            const float* group,
@@ -74,19 +106,15 @@ LANDMARKDB_INLINE Met meet(const SurfaceGrid& target,
       stored[lane] = target.stored_at({p[0][lane], p[1][lane], p[2][lane]});
     }
   }
-  float near[6][kLanes];
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const Surfel& surfel = view.surfels[stored[lane]];
-    for (int axis = 0; axis < 3; ++axis) {
-      near[axis][lane] = surfel.point.data()[axis];
-      near[axis + 3][lane] = surfel.normal.data()[axis];
-    }
-  }
+  Eights near[2][6];
+  load_surfels(view.surfels, stored, near[0]);
+  load_surfels(view.surfels, stored + 8, near[1]);
   met.distance = Floats{};
   met.cosine = Floats{};
   for (int axis = 0; axis < 3; ++axis) {
-    met.normal[axis] = load(near[axis + 3]);
-    met.distance += met.normal[axis] * (met.point[axis] - load(near[axis]));
+    met.normal[axis] = side_by_side(near[0][axis + 3], near[1][axis + 3]);
+    met.distance +=
+        met.normal[axis] * (met.point[axis] - side_by_side(near[0][axis], near[1][axis]));
     met.cosine += met.normal[axis] * turned[axis];
   }
   return met;

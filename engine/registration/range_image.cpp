@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "engine/registration/equal_angles.hpp"
-#include "engine/registration/sight_rays.hpp"
 
 namespace landmarkdb {
 
@@ -70,7 +69,7 @@ void RangeImage::choose_step(std::span<const Eigen::Vector3f> points) {
 
 void RangeImage::measure_cone(std::span<const Eigen::Vector3f> points) {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (const Eigen::Vector3f& point : points) sum += (point - viewpoint_).stableNormalized();
+  for (const Eigen::Vector3f& point : points) sum += (point - viewpoint_).normalized();
   if (!(sum.norm() > 0.0F)) return;
   cone_axis_ = sum.normalized();
   float least = 1.0F;
@@ -101,14 +100,19 @@ void RangeImage::measure(std::span<const Eigen::Vector3f> points) {
   const double cells = std::ceil(0.5 * std::numbers::pi / step_rad_);
   side_ = std::clamp(static_cast<int>(cells), 4, kMostCells);
   cells_.assign(6 * static_cast<std::size_t>(side_ * side_), Cell{kInfinity, 0.0F});
-  for (const Eigen::Vector3f& point : points) {
-    const Eigen::Vector3f ray = point - viewpoint_;
-    const float range = ray.norm();
-    if (!(range > 0.0F)) continue;
-    Cell& cell = cells_[index_of(place_of(ray))];
-    cell.nearest = std::min(cell.nearest, range);
-    cell.furthest = std::max(cell.furthest, range);
-    max_range_m_ = std::max(max_range_m_, range);
+  const SightView all_around{.t_view_surface = -viewpoint_, .reach_m = kInfinity, .side = side_};
+  const SightKernel look = sight_kernel();
+  std::array<SightRay, 256> rays;
+  for (std::size_t first = 0; first < points.size(); first += rays.size()) {
+    const std::size_t count = std::min(rays.size(), points.size() - first);
+    look(points[first].data(), nullptr, count, all_around, rays.data());
+    for (const SightRay& ray : std::span(rays).first(count)) {
+      if (!(ray.range_m > 0.0F)) continue;
+      Cell& cell = cells_[index_of(place_of(ray))];
+      cell.nearest = std::min(cell.nearest, ray.range_m);
+      cell.furthest = std::max(cell.furthest, ray.range_m);
+      max_range_m_ = std::max(max_range_m_, ray.range_m);
+    }
   }
   widened_.clear();
   widened_.reserve(cells_.size());
@@ -140,6 +144,10 @@ RangeImage::Place RangeImage::place_of(const Eigen::Vector3f& ray) const {
 RangeImage::Place RangeImage::place_at(std::size_t cell) const {
   const int index = static_cast<int>(cell);
   return {index / (side_ * side_), (index / side_) % side_, index % side_};
+}
+
+RangeImage::Place RangeImage::place_of(const SightRay& ray) {
+  return {ray.place >> 24, (ray.place >> 12) & 0xfff, ray.place & 0xfff};
 }
 
 std::size_t RangeImage::index_of(const Place& place) const {
@@ -216,34 +224,41 @@ RangeImage::Rendered RangeImage::render(const SightSurface& surface,
       if (!(ray.range_m > 0.0F)) continue;
       const int half = static_cast<int>(
           std::min(static_cast<float>(kWidestPatch), half_patch_cells / ray.range_m + 0.5F));
-      lay_patch({ray.place >> 24, (ray.place >> 12) & 0xfff, ray.place & 0xfff},
-                half,
-                {ray.range_m, ray.back != 0},
-                rendered);
+      lay_patch(place_of(ray), half, {ray.range_m, ray.back != 0}, rendered.predicted);
     }
   }
+  rendered.boxes = boxes_of(rendered.predicted);
   return rendered;
+}
+
+std::array<RangeImage::Box, 6> RangeImage::boxes_of(std::span<const Predicted> predicted) const {
+  std::array<Box, 6> boxes;
+  for (std::size_t i = 0; i < predicted.size(); ++i) {
+    if (predicted[i].range == kInfinity) continue;
+    const Place place = place_at(inner_[i]);
+    Box& box = boxes[static_cast<std::size_t>(place.face)];
+    box.first_row = std::min(box.first_row, place.row);
+    box.last_row = std::max(box.last_row, place.row);
+    box.first_column = std::min(box.first_column, place.column);
+    box.last_column = std::max(box.last_column, place.column);
+  }
+  return boxes;
 }
 
 void RangeImage::lay_patch(const Place& place,
                            int half,
                            const Predicted& patch,
-                           Rendered& rendered) const {
+                           std::span<Predicted> predicted) const {
   const int first_row = std::max(0, place.row - half);
   const int last_row = std::min(side_ - 1, place.row + half);
   const int first_column = std::max(0, place.column - half);
   const int last_column = std::min(side_ - 1, place.column + half);
-  Box& box = rendered.boxes[static_cast<std::size_t>(place.face)];
-  box.first_row = std::min(box.first_row, first_row);
-  box.last_row = std::max(box.last_row, last_row);
-  box.first_column = std::min(box.first_column, first_column);
-  box.last_column = std::max(box.last_column, last_column);
   for (int row = first_row; row <= last_row; ++row) {
     const std::size_t begin = index_of({place.face, row, 0});
     for (int column = first_column; column <= last_column; ++column) {
       const std::uint32_t inner = inner_of_cell_[begin + static_cast<std::size_t>(column)];
       if (inner == kOuter) continue;
-      Predicted& nearest = rendered.predicted[inner];
+      Predicted& nearest = predicted[inner];
       if (patch.range < nearest.range) nearest = patch;
     }
   }

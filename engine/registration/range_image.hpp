@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "engine/registration/sight_rays.hpp"
 #include "engine/registration/sight_surface.hpp"
 
 namespace landmarkdb {
@@ -126,7 +127,12 @@ class RangeImage {
                   const Eigen::Isometry3d& T_here_surface,
                   float patch_m) const;
   // Half so many cells to each side of a place, where that is nearer than what was predicted.
-  void lay_patch(const Place& place, int half, const Predicted& patch, Rendered& rendered) const;
+  void lay_patch(const Place& place,
+                 int half,
+                 const Predicted& patch,
+                 std::span<Predicted> predicted) const;
+  // Those that hold all that was predicted.
+  std::array<Box, 6> boxes_of(std::span<const Predicted> predicted) const;
   // Where most of the directions around are predicted, the surface is taken to go on between its
   // points: as far off as the furthest of those. Beyond a box there are three at most.
   void fill_gaps(Rendered& rendered) const;
@@ -146,6 +152,7 @@ class RangeImage {
   Completeness completeness() const;
   int cell_along(float tangent) const;
   Place place_of(const Eigen::Vector3f& ray) const;
+  static Place place_of(const SightRay& ray);
   Place place_at(std::size_t cell) const;
   std::size_t index_of(const Place& place) const;
   Cell widen(std::size_t cell) const;

@@ -15,11 +15,13 @@
 
 namespace landmarkdb {
 
-// A point of a surface and the unit normal there.
-struct Surfel {
+// A point of a surface and the unit normal there; within one line of the cache, as kernels load it
+// at once.
+struct alignas(32) Surfel {
   Eigen::Vector3f point;
   Eigen::Vector3f normal;
 };
+static_assert(sizeof(Surfel) == 32);
 
 // What a grid takes: blocks of 8 x 8 x 8 cells and a surfel a point.
 struct GridSize {

@@ -1,6 +1,6 @@
 #include "engine/retrieval/agreement.hpp"
 
-#include <cstdint>
+#include <algorithm>
 #include <vector>
 
 #include "engine/base/parallel.hpp"
@@ -15,16 +15,14 @@ double agreeing_keypoints(const EntryMatches& matches, const Entry& entry, const
   const Eigen::Matrix3f R = pose.T_entry_sensor.linear().cast<float>();
   const Eigen::Vector3f t = pose.T_entry_sensor.translation().cast<float>();
   const auto inlier_m = static_cast<float>(kInlierCells) * entry.grid.cell_m();
+  std::vector<Eigen::Vector3f> there(query.size());
+  for (std::size_t i = 0; i < query.size(); ++i) there[i] = R * query.keypoints[i] + t;
   std::vector<char> agrees(query.size(), 0);
-  std::uint32_t count = 0;
   for (const Correspondence& pair : matches.putative) {
-    if (agrees[pair.query] != 0) continue;
-    const Eigen::Vector3f there = R * query.keypoints[pair.query] + t;
-    if ((there - target.keypoints[pair.target]).squaredNorm() > inlier_m * inlier_m) continue;
-    agrees[pair.query] = 1;
-    ++count;
+    const Eigen::Vector3f apart = there[pair.query] - target.keypoints[pair.target];
+    if (apart.squaredNorm() <= inlier_m * inlier_m) agrees[pair.query] = 1;
   }
-  return count;
+  return static_cast<double>(std::count(agrees.begin(), agrees.end(), 1));
 }
 
 }  // namespace

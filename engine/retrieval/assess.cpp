@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kWideStart = 2.5;  // cells of the target: IcpOptions::start_scale_cells
 constexpr std::size_t kCoarsePoints = 400;
+constexpr std::size_t kFinePoints = 1000;
 constexpr std::size_t kCoarseLook = 1000;  // a third of which can be seen
 
 Eigen::Isometry3d turned(const Eigen::Isometry3d& T, bool inverse) {
@@ -64,13 +65,38 @@ VerifyOptions verify_options(const Meeting& meeting) {
   return options;
 }
 
-// The last millimetres, by what is to be relied on.
-void refine_precisely(const Meeting& meeting, Assessed& assessed) {
-  IcpOptions options;
-  options.start_scale_cells = kWideStart;
-  assessed.icp = refine_icp(
-      meeting.target, meeting.precise, meeting.precise_normals, assessed.T_entry_sensor, options);
-  assessed.T_entry_sensor = assessed.icp.T_target_source;
+// Points of the query that a pose of a place is judged by.
+struct Judges {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+};
+
+Judges some_judges(const Meeting& meeting, std::size_t count) {
+  Judges judges;
+  for (const std::uint32_t i : spread(meeting.source.size(), count)) {
+    judges.points.push_back(meeting.source[i]);
+    judges.normals.push_back(meeting.source_normals[i]);
+  }
+  return judges;
+}
+
+// What these points and the entry's surface as seen from the pose, in patches of this width, say.
+void judge_in_place(const Meeting& meeting,
+                    const Entry& entry,
+                    const CleanQuery& query,
+                    std::span<const Eigen::Vector3f> points,
+                    std::span<const Eigen::Vector3f> normals,
+                    const SightSurface& surface,
+                    double patch_m,
+                    Assessed& assessed) {
+  Evidence& evidence = assessed.evidence;
+  const VerifyOptions verify = verify_options(meeting);
+  measure_overlap(
+      meeting.target, points, normals, assessed.T_entry_sensor, &entry.scanned, verify, evidence);
+  measure_sight(
+      query.ranges, surface, assessed.T_entry_sensor.inverse(), patch_m, verify, evidence);
+  assessed.score =
+      quality(evidence, possible_in_place(evidence), static_cast<double>(meeting.source.size()));
 }
 
 }  // namespace
@@ -96,41 +122,30 @@ Assessed assess_coarse(const Meeting& meeting,
                        const Entry& entry,
                        const CleanQuery& query,
                        const Eigen::Isometry3d& T_entry_sensor) {
-  std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;
-  for (const std::uint32_t i : spread(meeting.source.size(), kCoarsePoints)) {
-    points.push_back(meeting.source[i]);
-    normals.push_back(meeting.source_normals[i]);
-  }
+  const Judges some = some_judges(meeting, kCoarsePoints);
   IcpOptions options;
   options.start_scale_cells = kWideStart;
   options.max_iterations = 20;
   Assessed assessed;
   assessed.T_entry_proposed = T_entry_sensor;
-  assessed.icp = refine_icp(
-      meeting.target, points, normals, turned(T_entry_sensor, meeting.entry_is_source), options);
+  assessed.icp = refine_icp(meeting.target,
+                            some.points,
+                            some.normals,
+                            turned(T_entry_sensor, meeting.entry_is_source),
+                            options);
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
   if (meeting.entry_is_source) {
     look_at_object(meeting, entry, query, kCoarseLook, assessed);
     return assessed;
   }
-  Evidence& evidence = assessed.evidence;
-  const VerifyOptions verify = verify_options(meeting);
-  measure_overlap(meeting.target,
-                  points,
-                  normals,
-                  assessed.icp.T_target_source,
-                  &entry.scanned,
-                  verify,
-                  evidence);
-  measure_sight(query.ranges,
-                entry.wide_sight,
-                assessed.T_entry_sensor.inverse(),
-                entry.wide.cell_m(),
-                verify,
-                evidence);
-  assessed.score =
-      quality(evidence, possible_in_place(evidence), static_cast<double>(meeting.source.size()));
+  judge_in_place(meeting,
+                 entry,
+                 query,
+                 some.points,
+                 some.normals,
+                 entry.wide_sight,
+                 entry.wide.cell_m(),
+                 assessed);
   return assessed;
 }
 
@@ -147,33 +162,47 @@ void assess_fine(const Meeting& meeting,
                             options);
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
   if (meeting.entry_is_source) refine_seen(meeting, query, assessed);
-  const IcpResult refined = assessed.icp;
-  if (!meeting.precise.empty()) refine_precisely(meeting, assessed);
   Evidence& evidence = assessed.evidence;
   evidence = {};
-  evidence.observability = observability(refined, extent_of(meeting.source), meeting.source.size());
-  const VerifyOptions verify = verify_options(meeting);
+  evidence.observability =
+      observability(assessed.icp, extent_of(meeting.source), meeting.source.size());
   if (meeting.entry_is_source) {
     look_at_object(meeting, entry, query, meeting.source.size(), assessed);
     evidence.outgrown = outgrown_share(meeting, entry, assessed.T_entry_sensor);
     evidence.continued = continued_share(meeting, entry, assessed.T_entry_sensor);
     return;
   }
-  measure_overlap(meeting.target,
-                  meeting.source,
-                  meeting.source_normals,
-                  assessed.icp.T_target_source,
-                  &entry.scanned,
-                  verify,
-                  evidence);
-  measure_sight(query.ranges,
-                entry.sight,
-                assessed.T_entry_sensor.inverse(),
-                entry.record().prepared.resolution_m,
-                verify,
-                evidence);
-  assessed.score =
-      quality(evidence, possible_in_place(evidence), static_cast<double>(meeting.source.size()));
+  const Judges some = some_judges(meeting, kFinePoints);
+  judge_in_place(meeting,
+                 entry,
+                 query,
+                 some.points,
+                 some.normals,
+                 entry.wide_sight,
+                 entry.wide.cell_m(),
+                 assessed);
+}
+
+void assess_precisely(const Meeting& meeting,
+                      const Entry& entry,
+                      const CleanQuery& query,
+                      Assessed& assessed) {
+  if (!meeting.precise.empty()) {
+    IcpOptions options;
+    options.start_scale_cells = kWideStart;
+    options.max_iterations = 40;
+    assessed.icp = refine_icp(
+        meeting.target, meeting.precise, meeting.precise_normals, assessed.T_entry_sensor, options);
+    assessed.T_entry_sensor = assessed.icp.T_target_source;
+  }
+  judge_in_place(meeting,
+                 entry,
+                 query,
+                 meeting.source,
+                 meeting.source_normals,
+                 entry.sight,
+                 entry.record().prepared.resolution_m,
+                 assessed);
 }
 
 }  // namespace landmarkdb

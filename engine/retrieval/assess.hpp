@@ -69,10 +69,16 @@ Assessed assess_coarse(const Meeting& meeting,
                        const CleanQuery& query,
                        const Eigen::Isometry3d& T_entry_sensor);
 
-// Refinement with all points, and all the evidence.
+// Refinement with all points, and all the evidence; of a place as far as its wide grid shows it.
 void assess_fine(const Meeting& meeting,
                  const Entry& entry,
                  const CleanQuery& query,
                  Assessed& assessed);
+
+// Of a place's pose: the last millimetres, and the evidence of the whole surface.
+void assess_precisely(const Meeting& meeting,
+                      const Entry& entry,
+                      const CleanQuery& query,
+                      Assessed& assessed);
 
 }  // namespace landmarkdb

@@ -132,6 +132,39 @@ std::vector<Assessed> best_distinct(const std::vector<Assessed>& assessed,
       distinct, objects ? kFineObjects : kFine, [](const Assessed& pose) { return pose.entry; });
 }
 
+// Poses of places that may turn out the best, or a rival that counts, are assessed to the last;
+// best first, a few at a time, until none of the others is within reach of the best.
+void assess_within_reach(const SearchInput& input,
+                         const MeetingOf& meeting_of,
+                         const SearchResult& result,
+                         std::vector<Assessed>& poses) {
+  constexpr std::size_t kAtATime = 4;
+  constexpr double kReach =
+      0.5;  // of the best score; a rival below 0.6 counts nothing (verdict.cpp)
+  std::stable_sort(poses.begin(), poses.end(), [](const Assessed& a, const Assessed& b) {
+    return a.score > b.score;
+  });
+  double best = poses.empty() ? 0.0 : poses.front().score;
+  for (std::size_t first = 0; first < poses.size();) {
+    const auto end = std::find_if(
+        poses.begin() + static_cast<std::ptrdiff_t>(first),
+        poses.begin() + static_cast<std::ptrdiff_t>(std::min(first + kAtATime, poses.size())),
+        [&](const Assessed& pose) { return pose.score < kReach * best; });
+    const std::span within(poses.begin() + static_cast<std::ptrdiff_t>(first), end);
+    if (within.empty()) break;
+    parallel_each(within.size(), input.context.threads, [&](std::size_t i) {
+      input.context.check("verify");
+      assess_precisely(meeting_of(result.matches[within[i].matches]),
+                       input.entries[within[i].entry],
+                       input.query,
+                       within[i]);
+    });
+    if (first == 0) best = 0.0;  // as it was assessed less closely
+    for (const Assessed& pose : within) best = std::max(best, pose.score);
+    first += within.size();
+  }
+}
+
 }  // namespace
 
 const QueryView& ViewCache::add(const FeatureOptions& options,
@@ -244,15 +277,14 @@ void assess_candidates(const SearchInput& input,
   }
   const StageTimer timer(input.timings.verify);
   std::vector<Assessed> best = best_distinct(assessed, input.entries, input.query.centre);
-  parallel_chunks(best.size(), input.context.threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      input.context.check("verify");
-      assess_fine(meeting_of(result.matches[best[i].matches]),
-                  input.entries[best[i].entry],
-                  input.query,
-                  best[i]);
-    }
+  parallel_each(best.size(), input.context.threads, [&](std::size_t i) {
+    input.context.check("verify");
+    assess_fine(meeting_of(result.matches[best[i].matches]),
+                input.entries[best[i].entry],
+                input.query,
+                best[i]);
   });
+  if (!objects) assess_within_reach(input, meeting_of, result, best);
   for (const Assessed& pose : best) ++result.matches[pose.matches].poses.verified;
   result.poses.insert(result.poses.end(), best.begin(), best.end());
 }

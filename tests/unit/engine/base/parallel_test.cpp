@@ -27,6 +27,30 @@ TEST(ParallelChunks, CoversEachIndexOnceForAnySizeAndThreadCount) {
   }
 }
 
+TEST(ParallelEach, VisitsEachIndexOnceForAnySizeAndThreadCount) {
+  for (const std::size_t n : {0U, 1U, 3U, 64U, 1001U}) {
+    for (const int threads : {-1, 1, 2, 8, 100}) {
+      std::vector<std::atomic<int>> visits(n);
+      parallel_each(n, threads, [&](std::size_t i) { ++visits[i]; });
+      for (const std::atomic<int>& count : visits) ASSERT_EQ(count, 1) << n << ", " << threads;
+    }
+  }
+}
+
+TEST(ParallelRuns, CutsIntoRunsOfOneLengthAndTheRest) {
+  for (const int threads : {1, 3}) {
+    std::mutex mutex;
+    std::vector<std::pair<std::size_t, std::size_t>> runs;
+    parallel_runs(10, 4, threads, [&](std::size_t begin, std::size_t end) {
+      const std::lock_guard lock(mutex);
+      runs.emplace_back(begin, end);
+    });
+    std::sort(runs.begin(), runs.end());
+    const std::vector<std::pair<std::size_t, std::size_t>> expected{{0, 4}, {4, 8}, {8, 10}};
+    EXPECT_EQ(runs, expected);
+  }
+}
+
 TEST(ParallelChunks, CutsIntoEqualContiguousChunksAndNoMoreThanAsked) {
   std::mutex mutex;
   std::vector<std::pair<std::size_t, std::size_t>> chunks;

@@ -50,6 +50,37 @@ TEST(SortByKey, SortsLikeAStableSortWhateverBitsTheKeysHave) {
   }
 }
 
+// Enough items that each thread has its share.
+TEST(SortByKey, SortsTheSameOnAnyNumberOfThreads) {
+  Random random(3);
+  const std::vector<Keyed> items = random_items(200'000, std::uint64_t{0xffffff} << 20U, random);
+  std::vector<Keyed> alone = items;
+  sort_by_key(alone);
+  for (const int threads : {2, 3, 8}) {
+    RunContext context;
+    context.threads = threads;
+    std::vector<Keyed> sorted = items;
+    sort_by_key(sorted, context);
+    for (std::size_t i = 0; i < items.size(); ++i) ASSERT_EQ(sorted[i].index, alone[i].index) << i;
+  }
+}
+
+TEST(SortWords, SortsByTheUpperBitsAndKeepsTheOrderOfTheRest) {
+  Random random(4);
+  for (const int first_bit : {0, 7, 40}) {
+    std::vector<std::uint64_t> words;
+    for (const Keyed& item : random_items(3000, ~std::uint64_t{0}, random)) {
+      words.push_back(item.key & ~(std::uint64_t{0xff} << first_bit));  // many keys of one kind
+    }
+    std::vector<std::uint64_t> expected = words;
+    std::stable_sort(expected.begin(), expected.end(), [&](std::uint64_t a, std::uint64_t b) {
+      return a >> first_bit < b >> first_bit;
+    });
+    sort_words(words, first_bit);
+    ASSERT_EQ(words, expected);
+  }
+}
+
 TEST(SortByKey, EndsWhenAskedTo) {
   Random random(2);
   std::vector<Keyed> items = random_items(100, ~std::uint64_t{0}, random);

@@ -42,6 +42,7 @@ struct Seen {
   Assessed assess(const Eigen::Isometry3d& start) const {
     Assessed assessed = assess_coarse(meeting, entry, query, start);
     assess_fine(meeting, entry, query, assessed);
+    assess_precisely(meeting, entry, query, assessed);
     return assessed;
   }
 };
