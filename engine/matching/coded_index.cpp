@@ -14,6 +14,7 @@
 #include "engine/matching/descriptor_rows.hpp"
 #include "engine/matching/make_codes.hpp"
 #include "engine/matching/measures.hpp"
+#include "engine/matching/near_lists.hpp"
 #include "engine/matching/nearest_list.hpp"
 #include "engine/matching/shortlist.hpp"
 
@@ -25,9 +26,6 @@ constexpr std::uint32_t kNoRow = DescriptorMatch::kNone;
 
 // Queries that go over the lists together, so that a list is read once for all who want it.
 constexpr std::size_t kQueryBlock = 1024;
-
-constexpr std::size_t kSampleStep = 16;
-constexpr std::int32_t kLowest = PackedCodes::kNoCode;
 
 // The lists nearest to a query are read before all others: what they hold rules out most of the
 // rest.
@@ -97,14 +95,7 @@ class CodedIndexMaker::Index : public CodedIndex {
   void finish() {
     first_list_.push_back(list_start_.size());
     list_start_.push_back(codes_.groups());
-    packed_centres_.append(centres_);
-    std::vector<std::int8_t> sample;
-    for (std::size_t l = 0; l < lists(); l += kSampleStep) {
-      const auto* centre = centres_.data() + l * kCodeLength;
-      sample.insert(sample.end(), centre, centre + kCodeLength);
-    }
-    sample_.append(sample);
-    centres_ = {};
+    centres_.finish();
   }
 
   std::size_t size() const override { return size_; }
@@ -176,8 +167,7 @@ class CodedIndexMaker::Index : public CodedIndex {
       }
       row_of_.resize(codes_.bias.size(), kNoRow);
       most_in_list_ = std::max(most_in_list_, count + kCodeGroup);
-      const auto* centre = codes.centres.data() + l * kCodeLength;
-      centres_.insert(centres_.end(), centre, centre + kCodeLength);
+      centres_.add(std::span(codes.centres).subspan(l * kCodeLength, kCodeLength));
     }
   }
 
@@ -243,55 +233,12 @@ class CodedIndexMaker::Index : public CodedIndex {
         std::min(lists(), std::max(options_.min_lists, share_of(options_.list_share, lists())));
     const std::size_t first = std::min(probes, kFirstLists);
     std::vector<std::uint32_t> chosen(block.size() * probes);
-    choose_lists(block, probes, first, chosen);
+    NearLists::Scratch scratch;
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      centres_.choose(block.code(i), first, std::span(chosen).subspan(i * probes, probes), scratch);
+    }
     read_lists(block, wishes_for(chosen, probes, 0, first), shortlists, context);
     read_lists(block, wishes_for(chosen, probes, first, probes), shortlists, context);
-  }
-
-  // The `probes` lists of each query whose centres are nearest, the first `first` of them ahead.
-  void choose_lists(const Block& block,
-                    std::size_t probes,
-                    std::size_t first,
-                    std::vector<std::uint32_t>& chosen) const {
-    std::vector<CodeHit> hits(packed_centres_.bias.size());
-    std::vector<std::int32_t> scores(sample_.bias.size());
-    std::vector<CodeCandidate> candidates;
-    for (std::size_t i = 0; i < block.size(); ++i) {
-      candidates.clear();
-      for (std::int32_t floor : {likely_floor(block.code(i), probes, scores), kLowest}) {
-        if (candidates.size() >= probes) break;
-        candidates.clear();
-        const std::size_t count = code_kernels().above(block.code(i),
-                                                       packed_centres_.bytes.data(),
-                                                       packed_centres_.bias.data(),
-                                                       packed_centres_.groups(),
-                                                       floor,
-                                                       hits.data());
-        for (std::size_t h = 0; h < count; ++h) {
-          if (hits[h].place < lists()) {
-            candidates.push_back(make_candidate(hits[h].score, hits[h].place));
-          }
-        }
-      }
-      put_best_ahead(candidates, probes);
-      put_best_ahead(std::span(candidates).first(probes), first);
-      for (std::size_t j = 0; j < probes; ++j) chosen[i * probes + j] = row_of(candidates[j]);
-    }
-  }
-
-  // A score above which the `probes` best lists probably lie, by a sample of them.
-  std::int32_t likely_floor(const std::int8_t* code,
-                            std::size_t probes,
-                            std::vector<std::int32_t>& scores) const {
-    constexpr std::size_t kSpare = 4;  // of the sample, lest too few are above
-    const std::size_t rank = probes * 5 / 4 / kSampleStep + kSpare;
-    const std::size_t sampled = (lists() + kSampleStep - 1) / kSampleStep;
-    if (rank >= sampled) return kLowest;
-    code_kernels().scores(
-        code, sample_.bytes.data(), sample_.bias.data(), sample_.groups(), scores.data());
-    const auto at = scores.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(scores.begin(), at, scores.end(), std::greater<>());
-    return *at - 1;
   }
 
   Wishes wishes_for(const std::vector<std::uint32_t>& chosen,
@@ -422,11 +369,9 @@ class CodedIndexMaker::Index : public CodedIndex {
   std::vector<std::uint32_t> row_of_;    // by place in `codes_`; kNoRow: filling
   std::vector<std::int8_t> tails_;       // by row
   std::vector<std::size_t> list_start_;  // the first group of each list, and the number of groups
-  PackedCodes sample_;                   // of every kSampleStep-th centre
-  std::vector<std::int8_t> centres_;     // of the lists, until they are packed
-  PackedCodes packed_centres_;
-  std::vector<std::size_t> first_list_;         // of each part, and the number of lists
-  std::vector<std::size_t> first_row_;          // of each part
+  NearLists centres_;                    // of the lists
+  std::vector<std::size_t> first_list_;  // of each part, and the number of lists
+  std::vector<std::size_t> first_row_;   // of each part
   std::vector<std::span<const float>> values_;  // of each part
   std::size_t size_ = 0;
   std::size_t most_in_list_ = 0;

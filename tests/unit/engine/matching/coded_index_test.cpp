@@ -114,6 +114,55 @@ TEST(CodedIndex, FindsNearlyAllThatTheExactIndexFinds) {
   }
 }
 
+TEST(CodedIndex, SearchesSomePartsAsAnIndexOfThemAloneThatReadsAllDoes) {
+  const std::vector<float> stored = surface_like_descriptors(3000, 100, 8);
+  const std::vector<float> queries = surface_like_descriptors(200, 100, 9);
+  constexpr std::size_t kNeighbours = 7;
+  Parts all = parts_of(stored, {800, 700, 0, 900, 600});
+  for (CodedPart& part : all.parts) part.values = {};  // by codes alone
+  const std::vector<CodedPart> some{all.parts[1], all.parts[3]};
+  const auto want = search(
+      *make_coded_index(some, {.list_share = 1.0, .refined = 32, .refined_a_neighbour = 2.0}),
+      queries,
+      kNeighbours);
+  const auto index = make_coded_index(all.parts);
+  for (const int threads : {1, 3}) {
+    RunContext context;
+    context.threads = threads;
+    std::vector<DescriptorMatch> found;
+    index->search_parts(std::vector<std::size_t>{1, 3}, queries, kNeighbours, found, context);
+    ASSERT_EQ(found.size(), want.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].index, want[i].index + 800) << i;  // behind part 0; part 2 is empty
+      EXPECT_EQ(found[i].distance, want[i].distance) << i;
+    }
+  }
+}
+
+TEST(CodedIndex, FindsMostWithoutTails) {
+  std::vector<float> stored = surface_like_descriptors(6150, 300, 1);
+  const std::vector<float> queries(stored.end() - 150 * kShotLength, stored.end());
+  stored.resize(6000 * kShotLength);
+  Parts parts = parts_of(stored, {2500, 3500});
+  for (std::size_t i = 0; i < parts.parts.size(); ++i) {
+    parts.parts[i].values = {};
+    parts.codes[i].tails = {};
+  }
+  EXPECT_THROW(make_coded_index(parts.parts), Error);
+  const auto index = make_coded_index(parts.parts, {.keeps_tails = false});
+  EXPECT_FALSE(index->has_tails());
+  constexpr std::size_t kNeighbours = 10;
+  const auto found = search(*index, queries, kNeighbours);
+  const auto truth = search(*make_exact_index(stored, Measure::kL2), queries, 1);
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    hits += found[i].index == truth[i / kNeighbours].index ? 1U : 0U;
+    const std::size_t before = i % kNeighbours > 0 ? i - 1 : i;
+    EXPECT_LE(found[before].distance, found[i].distance);
+  }
+  EXPECT_GE(static_cast<double>(hits) / static_cast<double>(truth.size()), 0.95);
+}
+
 TEST(CodedIndex, FindsEachRowItself) {
   const std::vector<float> stored = random_descriptors(1000, 10, 2);
   const Parts parts = parts_of(stored, {1000});

@@ -1,7 +1,11 @@
 #include "engine/retrieval/entries.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
+#include "engine/retrieval/narrow_places.hpp"
+#include "engine/retrieval/scene_index.hpp"
 #include "tests/unit/engine/retrieval/rooms.hpp"
 #include "tests/unit/engine/retrieval/scene_shelf.hpp"
 
@@ -53,6 +57,47 @@ TEST_F(OnDemand, AnswersAsIfAllWereInMemoryWhateverIsKept) {
       EXPECT_EQ(got.hypotheses[0].confidence, want.hypotheses[0].confidence);
     }
     EXPECT_EQ(localizer.loaded().bytes > 0, bytes > 0);
+  }
+}
+
+// Of more places than are looked at closely, most are alike.
+TEST_F(OnDemand, ReadsAFewOfManyPlacesAndFindsTheRightOne) {
+  constexpr std::size_t kPlaces = kMostPlaces + 6;
+  auto many = std::make_shared<Catalog>(*in_memory);
+  for (std::size_t i = 2; i < kPlaces; ++i) {
+    auto copy = std::make_shared<SceneRecord>(*in_memory->entries[1].record);
+    copy->name = "copy " + std::to_string(i);
+    many->entries.push_back(in_memory->entries[1]);
+    many->entries.back().scene_id = static_cast<std::int64_t>(i) + 2;
+    many->entries.back().record = std::move(copy);
+  }
+  const QueryResult in_full = ask(Localizer(many, {}));
+  EXPECT_EQ(in_full.status, QueryStatus::kLocalized) << in_full.reason;
+  ASSERT_FALSE(in_full.hypotheses.empty());
+  EXPECT_EQ(in_full.hypotheses[0].scene, "room 2");
+
+  std::vector<QueryResult> answers;
+  for (const bool indexed : {false, true}) {
+    std::vector<std::shared_ptr<testing::SceneShelf>> many_shelves;
+    const std::shared_ptr<const Catalog> stored = shelved(*many, many_shelves);
+    for (std::size_t i = 0; i < kPlaces; ++i) {
+      if (indexed) many_shelves[i]->stored_index = make_scene_index(*many->entries[i].record, {});
+    }
+    const Localizer localizer(stored, {}, {.most_scanned_rows = 1});
+    for (const auto& shelf : many_shelves) shelf->loads = 0;
+    answers.push_back(ask(localizer));
+    const auto read = std::count_if(many_shelves.begin(),
+                                    many_shelves.end(),
+                                    [](const auto& shelf) { return shelf->loads > 0; });
+    EXPECT_GE(read, 1);
+    EXPECT_LE(read, static_cast<std::ptrdiff_t>(kMostPlaces));
+  }
+  for (const QueryResult& answer : answers) {
+    EXPECT_EQ(answer.status, QueryStatus::kLocalized) << answer.reason;
+    ASSERT_FALSE(answer.hypotheses.empty());
+    EXPECT_EQ(answer.hypotheses[0].scene, "room 2");
+    EXPECT_EQ(answer.hypotheses[0].T_scene_sensor, answers[0].hypotheses[0].T_scene_sensor);
+    EXPECT_EQ(answer.hypotheses[0].confidence, answers[0].hypotheses[0].confidence);
   }
 }
 
