@@ -65,6 +65,24 @@ VerifyOptions verify_options(const Meeting& meeting) {
   return options;
 }
 
+// The last millimetres, by what is to be relied on.
+void refine_precisely(const Meeting& meeting, Assessed& assessed) {
+  IcpOptions options;
+  options.start_scale_cells = kWideStart;
+  options.max_iterations = 40;
+  assessed.icp = refine_icp(
+      meeting.target, meeting.precise, meeting.precise_normals, assessed.T_entry_sensor, options);
+  assessed.T_entry_sensor = assessed.icp.T_target_source;
+}
+
+// What all points of the query are paired with where they lie.
+IcpResult paired_at(const Meeting& meeting, const Eigen::Isometry3d& T_entry_sensor) {
+  IcpOptions options;
+  options.max_iterations = 0;
+  return refine_icp(
+      meeting.target, meeting.source, meeting.source_normals, T_entry_sensor, options);
+}
+
 // Points of the query that a pose of a place is judged by.
 struct Judges {
   std::vector<Eigen::Vector3f> points;
@@ -161,17 +179,21 @@ void assess_fine(const Meeting& meeting,
                             turned(assessed.T_entry_sensor, meeting.entry_is_source),
                             options);
   assessed.T_entry_sensor = turned(assessed.icp.T_target_source, meeting.entry_is_source);
-  if (meeting.entry_is_source) refine_seen(meeting, query, assessed);
   Evidence& evidence = assessed.evidence;
   evidence = {};
-  evidence.observability =
-      observability(assessed.icp, extent_of(meeting.source), meeting.source.size());
   if (meeting.entry_is_source) {
+    refine_seen(meeting, query, assessed);
+    evidence.observability =
+        observability(assessed.icp, extent_of(meeting.source), meeting.source.size());
     look_at_object(meeting, entry, query, meeting.source.size(), assessed);
     evidence.outgrown = outgrown_share(meeting, entry, assessed.T_entry_sensor);
     evidence.continued = continued_share(meeting, entry, assessed.T_entry_sensor);
     return;
   }
+  if (!meeting.precise.empty()) refine_precisely(meeting, assessed);
+  evidence.observability = observability(paired_at(meeting, assessed.T_entry_sensor),
+                                         extent_of(meeting.source),
+                                         meeting.source.size());
   const Judges some = some_judges(meeting, kFinePoints);
   judge_in_place(meeting,
                  entry,
@@ -187,14 +209,6 @@ void assess_precisely(const Meeting& meeting,
                       const Entry& entry,
                       const CleanQuery& query,
                       Assessed& assessed) {
-  if (!meeting.precise.empty()) {
-    IcpOptions options;
-    options.start_scale_cells = kWideStart;
-    options.max_iterations = 40;
-    assessed.icp = refine_icp(
-        meeting.target, meeting.precise, meeting.precise_normals, assessed.T_entry_sensor, options);
-    assessed.T_entry_sensor = assessed.icp.T_target_source;
-  }
   judge_in_place(meeting,
                  entry,
                  query,

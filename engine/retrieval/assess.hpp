@@ -75,7 +75,7 @@ void assess_fine(const Meeting& meeting,
                  const CleanQuery& query,
                  Assessed& assessed);
 
-// Of a place's pose: the last millimetres, and the evidence of the whole surface.
+// Of a place's pose: the evidence of all points and the whole surface.
 void assess_precisely(const Meeting& meeting,
                       const Entry& entry,
                       const CleanQuery& query,
