@@ -58,6 +58,11 @@ std::size_t share_of(double share, std::size_t count) {
   return static_cast<std::size_t>(share * static_cast<double>(count));
 }
 
+Effort effort_of(const CodedSearchOptions& options, std::size_t k) {
+  return {options.refined + share_of(options.refined_a_neighbour, k),
+          options.compared + share_of(options.compared_a_neighbour, k)};
+}
+
 }  // namespace
 
 class CodedIndexMaker::Index : public CodedIndex {
@@ -106,11 +111,13 @@ class CodedIndexMaker::Index : public CodedIndex {
               std::size_t k,
               std::vector<DescriptorMatch>& out,
               const RunContext& context) const override {
-    const Effort effort{options_.refined + share_of(options_.refined_a_neighbour, k),
-                        options_.compared + share_of(options_.compared_a_neighbour, k)};
-    search_blocks(queries, k, effort, out, context, [&](const Block& block, auto& shortlists) {
-      read_near_lists(block, shortlists, context);
-    });
+    search_blocks(
+        queries,
+        k,
+        effort_of(options_, k),
+        out,
+        context,
+        [&](const Block& block, auto& shortlists) { read_near_lists(block, shortlists, context); });
   }
 
   void search_parts(std::span<const std::size_t> parts,
@@ -118,23 +125,22 @@ class CodedIndexMaker::Index : public CodedIndex {
                     std::size_t k,
                     std::vector<DescriptorMatch>& out,
                     const RunContext& context) const override {
-    // Many neighbours are asked for, and the very nearest is not more than others: with 4 and 8
-    // tails for each nothing else was found.
-    constexpr std::size_t kRefined = 32;
-    constexpr std::size_t kRefinedANeighbour = 2;
-    const Effort effort{kRefined + kRefinedANeighbour * k,
-                        options_.compared + share_of(options_.compared_a_neighbour, k)};
-    search_blocks(queries, k, effort, out, context, [&](const Block& block, auto& shortlists) {
-      std::vector<std::uint32_t> all(block.size());
-      std::iota(all.begin(), all.end(), 0U);
-      ListReader reader(*this);
-      for (const std::size_t part : parts) {
-        for (std::size_t l = first_list_[part]; l < first_list_[part + 1]; ++l) {
-          if (context.should_stop()) return;
-          reader.read(block, l, all, shortlists);
-        }
-      }
-    });
+    search_blocks(queries,
+                  k,
+                  effort_of(kScanOptions, k),
+                  out,
+                  context,
+                  [&](const Block& block, auto& shortlists) {
+                    std::vector<std::uint32_t> all(block.size());
+                    std::iota(all.begin(), all.end(), 0U);
+                    ListReader reader(*this);
+                    for (const std::size_t part : parts) {
+                      for (std::size_t l = first_list_[part]; l < first_list_[part + 1]; ++l) {
+                        if (context.should_stop()) return;
+                        reader.read(block, l, all, shortlists);
+                      }
+                    }
+                  });
   }
 
  private:

@@ -33,6 +33,11 @@ struct CodedSearchOptions {
   bool keeps_tails = true;
 };
 
+// Of all rows the codes: many neighbours are asked for then, and what proposes a pose need not be
+// the very nearest; with 4 and 8 tails read for each nothing else was found.
+inline constexpr CodedSearchOptions kScanOptions{
+    .list_share = 1.0, .refined = 32, .refined_a_neighbour = 2.0};
+
 // Ranks by l2 distance. Finds most of the true neighbours; what it returns was compared in full. In
 // an index with parts of which only the codes are at hand nothing is: there the distance is that of
 // code and tail, a little less than the true one, the order that of the codes, and no descriptors
@@ -41,7 +46,7 @@ struct CodedSearchOptions {
 class CodedIndex : public DescriptorIndex {
  public:
   // The nearest among the rows of these parts alone (by their order, ascending), of which all codes
-  // are compared: what an index over just these parts that reads all of its lists finds. `out` and
+  // are compared: what an index over just these parts with kScanOptions finds. `out` and
   // what is thrown as in search(); rows are those of the whole index.
   virtual void search_parts(std::span<const std::size_t> parts,
                             std::span<const float> queries,

@@ -117,6 +117,22 @@ void judge_in_place(const Meeting& meeting,
       quality(evidence, possible_in_place(evidence), static_cast<double>(meeting.source.size()));
 }
 
+// The same as far as the surface of the entry's wide grid shows it.
+void judge_by_wide_surface(const Meeting& meeting,
+                           const Entry& entry,
+                           const CleanQuery& query,
+                           const Judges& judges,
+                           Assessed& assessed) {
+  judge_in_place(meeting,
+                 entry,
+                 query,
+                 judges.points,
+                 judges.normals,
+                 entry.wide_sight,
+                 entry.wide.cell_m(),
+                 assessed);
+}
+
 }  // namespace
 
 bool same_spot(const Assessed& a,
@@ -156,14 +172,7 @@ Assessed assess_coarse(const Meeting& meeting,
     look_at_object(meeting, entry, query, kCoarseLook, assessed);
     return assessed;
   }
-  judge_in_place(meeting,
-                 entry,
-                 query,
-                 some.points,
-                 some.normals,
-                 entry.wide_sight,
-                 entry.wide.cell_m(),
-                 assessed);
+  judge_by_wide_surface(meeting, entry, query, some, assessed);
   return assessed;
 }
 
@@ -194,15 +203,7 @@ void assess_fine(const Meeting& meeting,
   evidence.observability = observability(paired_at(meeting, assessed.T_entry_sensor),
                                          extent_of(meeting.source),
                                          meeting.source.size());
-  const Judges some = some_judges(meeting, kFinePoints);
-  judge_in_place(meeting,
-                 entry,
-                 query,
-                 some.points,
-                 some.normals,
-                 entry.wide_sight,
-                 entry.wide.cell_m(),
-                 assessed);
+  judge_by_wide_surface(meeting, entry, query, some_judges(meeting, kFinePoints), assessed);
 }
 
 void assess_precisely(const Meeting& meeting,

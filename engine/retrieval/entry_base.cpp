@@ -39,9 +39,8 @@ std::vector<std::size_t> kept_whole(const Entries& entries, std::size_t most_sca
     if (entries[i].is_object()) whole.push_back(i);
   }
   for (const std::vector<std::size_t>& group : group_places(entries)) {
-    std::size_t rows = 0;
-    for (const std::size_t i : group) rows += rows_of(entries[i]);
-    if (rows <= most_scanned_rows) whole.insert(whole.end(), group.begin(), group.end());
+    if (rows_of(entries, group) > most_scanned_rows) continue;
+    whole.insert(whole.end(), group.begin(), group.end());
   }
   std::sort(whole.begin(), whole.end());
   return whole;
@@ -51,9 +50,8 @@ std::vector<std::size_t> kept_whole(const Entries& entries, std::size_t most_sca
 std::vector<bool> tails_kept(const Entries& entries) {
   std::vector<bool> kept(entries.size(), true);
   for (const std::vector<std::size_t>& group : group_places(entries)) {
-    std::size_t rows = 0;
-    for (const std::size_t i : group) rows += rows_of(entries[i]);
-    for (const std::size_t i : group) kept[i] = keeps_tails(group.size(), rows);
+    const bool keeps = keeps_tails(group.size(), rows_of(entries, group));
+    for (const std::size_t i : group) kept[i] = keeps;
   }
   return kept;
 }
@@ -65,14 +63,14 @@ void add_outline(CatalogEntry stored,
                  const RunContext& context,
                  std::shared_ptr<const Entry>& entry,
                  std::optional<DescriptorCodes>& codes) {
-  stored.record = stored.source->load(SceneParts::kKeypoints, context);
   std::optional<SceneIndex> index =
       scene_index_of(*stored.source, static_cast<std::size_t>(stored.keypoints), context);
+  stored.record =
+      stored.source->load(index ? SceneParts::kKeypoints : SceneParts::kSurface, context);
   if (index) {
     codes = std::move(index->codes);
     if (!with_tails) codes->tails = {};
   } else {
-    stored.record = stored.source->load(SceneParts::kSurface, context);
     index.emplace().outline = make_place_outline(stored.record->prepared);
   }
   entry = std::make_shared<const Entry>(make_outline(std::move(stored), index->outline));

@@ -87,14 +87,8 @@ std::unique_ptr<CodedIndex> make_index_of_codes(const Entries& entries,
   return maker.finish();
 }
 
-// Many neighbours are asked for, and what proposes a pose need not be the very nearest: with 4 and
-// 8 tails read for each nothing else was found.
-CodedSearchOptions scan_options() {
-  return {.list_share = 1.0, .refined = 32, .refined_a_neighbour = 2.0};
-}
-
 CodedSearchOptions options_for(const Level& level) {
-  if (level.scanned) return scan_options();
+  if (level.scanned) return kScanOptions;
   return {.keeps_tails = keeps_tails(level.entries.size(), level.rows())};
 }
 
@@ -114,13 +108,18 @@ std::size_t rows_of(const Entry& entry) {
                                         : entry.record().descriptors.size();
 }
 
+std::size_t rows_of(const Entries& entries, std::span<const std::size_t> chosen) {
+  std::size_t rows = 0;
+  for (const std::size_t entry : chosen) rows += rows_of(entries[entry]);
+  return rows;
+}
+
 std::vector<float> level_values(const Entries& entries,
                                 std::span<const std::size_t> chosen,
                                 const RunContext& context) {
-  std::size_t rows = 0;
-  for (const std::size_t entry : chosen) rows += rows_of(entries[entry]);
   std::vector<float> all;
-  all.reserve(rows * kShotLength);  // gigabytes for a thousand places: grown, it would hold two
+  all.reserve(rows_of(entries, chosen) *
+              kShotLength);  // gigabytes for a thousand places: grown, it would hold two
   std::size_t want = 0;
   for (const std::size_t entry : chosen) {
     context.check("load");

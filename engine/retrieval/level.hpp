@@ -51,6 +51,7 @@ using CodesAtHand = std::function<std::optional<DescriptorCodes>(std::size_t ent
 
 // How many descriptors the entry has, whether they are in memory or not.
 std::size_t rows_of(const Entry& entry);
+std::size_t rows_of(const Entries& entries, std::span<const std::size_t> chosen);  // of all these
 
 // The places by their feature options, in order of first appearance, indices ascending. Objects are
 // in no group: they are looked for in the query, not the query in them.

@@ -132,6 +132,21 @@ std::vector<Assessed> best_distinct(const std::vector<Assessed>& assessed,
       distinct, objects ? kFineObjects : kFine, [](const Assessed& pose) { return pose.entry; });
 }
 
+// Looks at the poses side by side.
+void assess_each(const SearchInput& input,
+                 const MeetingOf& meeting_of,
+                 const SearchResult& result,
+                 decltype(assess_fine)* assess,
+                 std::span<Assessed> poses) {
+  parallel_each(poses.size(), input.context.threads, [&](std::size_t i) {
+    input.context.check("verify");
+    assess(meeting_of(result.matches[poses[i].matches]),
+           input.entries[poses[i].entry],
+           input.query,
+           poses[i]);
+  });
+}
+
 // Poses of places that may turn out the best, or a rival that counts, are assessed to the last;
 // best first, a few at a time, until none of the others is within reach of the best.
 void assess_within_reach(const SearchInput& input,
@@ -152,13 +167,7 @@ void assess_within_reach(const SearchInput& input,
         [&](const Assessed& pose) { return pose.score < kReach * best; });
     const std::span within(poses.begin() + static_cast<std::ptrdiff_t>(first), end);
     if (within.empty()) break;
-    parallel_each(within.size(), input.context.threads, [&](std::size_t i) {
-      input.context.check("verify");
-      assess_precisely(meeting_of(result.matches[within[i].matches]),
-                       input.entries[within[i].entry],
-                       input.query,
-                       within[i]);
-    });
+    assess_each(input, meeting_of, result, &assess_precisely, within);
     if (first == 0) best = 0.0;  // as it was assessed less closely
     for (const Assessed& pose : within) best = std::max(best, pose.score);
     first += within.size();
@@ -277,13 +286,7 @@ void assess_candidates(const SearchInput& input,
   }
   const StageTimer timer(input.timings.verify);
   std::vector<Assessed> best = best_distinct(assessed, input.entries, input.query.centre);
-  parallel_each(best.size(), input.context.threads, [&](std::size_t i) {
-    input.context.check("verify");
-    assess_fine(meeting_of(result.matches[best[i].matches]),
-                input.entries[best[i].entry],
-                input.query,
-                best[i]);
-  });
+  assess_each(input, meeting_of, result, &assess_fine, best);
   if (!objects) assess_within_reach(input, meeting_of, result, best);
   for (const Assessed& pose : best) ++result.matches[pose.matches].poses.verified;
   result.poses.insert(result.poses.end(), best.begin(), best.end());

@@ -109,12 +109,6 @@ void match_places_of(const SearchInput& input,
   }
 }
 
-std::size_t rows_of(const SearchInput& input, std::span<const std::size_t> asked) {
-  std::size_t rows = 0;
-  for (const std::size_t entry : asked) rows += rows_of(input.entries[entry]);
-  return rows;
-}
-
 std::size_t wanted_places(const SearchInput& input) {
   std::size_t count = 0;
   for (const Level& level : input.levels) {
@@ -235,7 +229,7 @@ void match_places(const SearchInput& input, SearchResult& result) {
       // What is asked of named scenes must not depend on the others, so that it is not left to
       // codes without tails.
       places.in_index =
-          level.index->has_tails() && rows_of(input, places.entries) <= kMostScannedRows;
+          level.index->has_tails() && rows_of(input.entries, places.entries) <= kMostScannedRows;
     }
     match_places_of(input, places, view, result);
   }
