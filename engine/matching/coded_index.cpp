@@ -10,6 +10,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/parallel.hpp"
+#include "engine/base/put_largest_first.hpp"
 #include "engine/matching/code_kernels.hpp"
 #include "engine/matching/descriptor_rows.hpp"
 #include "engine/matching/make_codes.hpp"
@@ -328,7 +329,7 @@ class CodedIndexMaker::Index : public CodedIndex {
       const std::int32_t farther = kernels.squared_distance(tail, tail_of(candidates[i]));
       candidates[i] = make_candidate(score_of(candidates[i]) - farther, row_of(candidates[i]));
     }
-    put_best_ahead(candidates, most);
+    put_largest_first(candidates, most);
     return candidates.first(std::min(most, candidates.size()));
   }
 

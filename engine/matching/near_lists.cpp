@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "engine/base/put_largest_first.hpp"
+
 namespace landmarkdb {
 
 namespace {
@@ -50,8 +52,8 @@ void NearLists::choose(const std::int8_t* code,
       if (hit.place < lists_) candidates.push_back(make_candidate(hit.score, hit.place));
     }
   }
-  put_best_ahead(candidates, wanted);
-  put_best_ahead(std::span(candidates).first(wanted), first);
+  put_largest_first(candidates, wanted);
+  put_largest_first(std::span(candidates).first(wanted), first);
   for (std::size_t j = 0; j < wanted; ++j) chosen[j] = row_of(candidates[j]);
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/put_largest_first.hpp"
 #include "engine/matching/code_kernels.hpp"
 
 namespace landmarkdb {
@@ -24,9 +25,6 @@ inline std::int32_t score_of(CodeCandidate candidate) {
 inline std::uint32_t row_of(CodeCandidate candidate) {
   return ~static_cast<std::uint32_t>(candidate);
 }
-
-// Brings the `most` best to the front, in no order. No two candidates are the same.
-void put_best_ahead(std::span<CodeCandidate> candidates, std::size_t most);
 
 // The `most` best candidates offered so far, whatever the order of offers.
 class Shortlist {
@@ -50,7 +48,7 @@ class Shortlist {
 
  private:
   void prune() {
-    put_best_ahead(candidates_, most_);
+    put_largest_first(candidates_, most_);
     candidates_.resize(most_);
     const CodeCandidate worst = *std::min_element(candidates_.begin(), candidates_.end());
     floor_ = score_of(worst) - 1;  // one as high may still have a lower row

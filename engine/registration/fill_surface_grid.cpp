@@ -65,22 +65,23 @@ void SurfaceGrid::insert(std::uint32_t first,
   std::vector<std::uint32_t> next = begin;
   for (const Pair& pair : pairs) sorted[next[pair.block]++] = pair.surfel;
 
+  const std::size_t known = blocks_.size();
   blocks_.resize(places.size(), Block{});
   parallel_chunks(places.size(), context.threads, [&](std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) {
       if ((k - from) % kStep == 0) context.check("grid");
       if (begin[k] == begin[k + 1]) continue;
       const std::span surfels = std::span(sorted).subspan(begin[k], begin[k + 1] - begin[k]);
-      fill_block(blocks_[k], places[k], surfels);
+      fill_block(blocks_[k], places[k], k >= known, surfels);
     }
   });
 }
 
-// Squared distances from the middle of each cell of a block to the surfel that it names.
+// Squared distances from the middle of each cell of a block to the surfel that it names, where it
+// names one.
 void SurfaceGrid::measure_block(const Block& block,
                                 const Cell& low,
                                 std::array<float, kBlockCells>& nearest) const {
-  nearest.fill(std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < kBlockCells; ++i) {
     if (block[i] == 0) continue;
     const auto cell = static_cast<int>(i);
@@ -93,11 +94,13 @@ void SurfaceGrid::measure_block(const Block& block,
 
 void SurfaceGrid::fill_block(Block& block,
                              const Cell& place,
+                             bool is_new,
                              std::span<const std::uint32_t> surfels) const {
   static_assert(BlockFill::kSide == kBlockSide && sizeof(Surfel) % sizeof(float) == 0);
   const Cell low = place * kBlockSide;
   std::array<float, kBlockCells> nearest;
-  measure_block(block, low, nearest);
+  nearest.fill(std::numeric_limits<float>::infinity());
+  if (!is_new) measure_block(block, low, nearest);
   BlockFill fill{.named = block.data(),
                  .nearest_m2 = nearest.data(),
                  .inverse_cell = inverse_cell_,

@@ -11,8 +11,10 @@ namespace landmarkdb {
 
 namespace {
 
-constexpr std::size_t kLanes = BlockFill::kSide;  // a row of a block
+constexpr int kRows = 2;  // of a block, one behind the other
+constexpr std::size_t kLanes = kRows * BlockFill::kSide;
 typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
+typedef std::int32_t Cells __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 typedef std::uint32_t Numbers __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
 
 #define LANDMARKDB_KERNEL_BODY "engine/registration/name_cells_body.hpp"

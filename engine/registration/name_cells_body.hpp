@@ -1,10 +1,16 @@
 // No include guard: name_cells.cpp includes this once for each instruction set, inside a namespace
-// and under a target pragma. `Floats` and `Numbers` are vectors of kLanes numbers that the compiler
-// lowers to what the target has; the operations and their order are the same for all.
+// and under a target pragma. `Floats`, `Cells` and `Numbers` are vectors of kLanes numbers that the
+// compiler lowers to what the target has; the operations and their order are the same for all.
 
 #include "engine/base/float_lanes_body.hpp"  // NOLINT(bugprone-suspicious-include): see there
 
-LANDMARKDB_INLINE void name_in_row(
+// Squares of the distances along one axis; infinite in cells that the surfel may not be named in.
+LANDMARKDB_INLINE Floats squared_within(Floats away, Cells cell, int low, int high) {
+  const Floats none = Floats{} + std::numeric_limits<float>::infinity();
+  return (cell < low) | (cell > high) ? none : away * away;
+}
+
+LANDMARKDB_INLINE void name_in_rows(
     Floats distance, float most, std::uint32_t surfel, float* nearest, std::uint32_t* named) {
   Floats near = load(nearest);
   Numbers names;
@@ -18,6 +24,19 @@ LANDMARKDB_INLINE void name_in_row(
 
 void name_cells(const BlockFill& block, const float* surfels, std::size_t stride) {
   constexpr int kSide = BlockFill::kSide;
+  constexpr int kPairs = kSide / kRows;  // of rows
+  Floats middle_x;
+  Cells cell_x;
+  Floats middle_y[kPairs];
+  Cells cell_y[kPairs];
+  for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
+    middle_x[lane] = block.middle_m[0][lane % kSide];
+    cell_x[lane] = lane % kSide;
+    for (int pair = 0; pair < kPairs; ++pair) {
+      cell_y[pair][lane] = kRows * pair + lane / kSide;
+      middle_y[pair][lane] = block.middle_m[1][kRows * pair + lane / kSide];
+    }
+  }
   for (const std::uint32_t surfel : block.surfels) {
     const float* p = surfels + surfel * stride;
     int low[3];
@@ -27,21 +46,17 @@ void name_cells(const BlockFill& block, const float* surfels, std::size_t stride
       low[axis] = std::max(0, home - block.reach);
       high[axis] = std::min(kSide - 1, home + block.reach);
     }
-    float along_x[kLanes];
-    for (int x = 0; x < kSide; ++x) {
-      const float away = block.middle_m[0][x] - p[0];
-      along_x[x] = x < low[0] || x > high[0] ? std::numeric_limits<float>::infinity() : away * away;
-    }
-    const Floats row_m2 = load(along_x);
-    for (int z = low[2]; z <= high[2]; ++z) {
-      const float away_z = block.middle_m[2][z] - p[2];
-      for (int y = low[1]; y <= high[1]; ++y) {
-        const float away_y = block.middle_m[1][y] - p[1];
-        const float beside = away_y * away_y + away_z * away_z;
-        if (beside > block.most_m2) continue;
-        const auto row = static_cast<std::size_t>((z * kSide + y) * kSide);
-        name_in_row(
-            row_m2 + beside, block.most_m2, surfel, block.nearest_m2 + row, block.named + row);
+    const Floats x_m2 = squared_within(middle_x - p[0], cell_x, low[0], high[0]);
+    for (int pair = low[1] / kRows; pair <= high[1] / kRows; ++pair) {
+      const Floats y_m2 = squared_within(middle_y[pair] - p[1], cell_y[pair], low[1], high[1]);
+      for (int z = low[2]; z <= high[2]; ++z) {
+        const float away_z = block.middle_m[2][z] - p[2];
+        const auto rows = static_cast<std::size_t>((z * kSide + kRows * pair) * kSide);
+        name_in_rows(x_m2 + (y_m2 + away_z * away_z),
+                     block.most_m2,
+                     surfel,
+                     block.nearest_m2 + rows,
+                     block.named + rows);
       }
     }
   }

@@ -1,12 +1,14 @@
 #include "engine/registration/sight_surface.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 #include <Eigen/Geometry>
+
+#include "engine/base/put_largest_first.hpp"
 
 namespace landmarkdb {
 
@@ -14,23 +16,32 @@ namespace {
 
 using Order = std::span<std::uint32_t>;
 
-// Brings the `half` points that are lowest along the axis to the front.
+// As a whole number that grows with the value.
+std::uint32_t rising(float value) {
+  constexpr std::uint32_t kSign = std::uint32_t{1} << 31U;
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  return (bits & kSign) != 0 ? ~bits : bits | kSign;
+}
+
+// Brings the `half` points that are lowest along the axis to the front. `words` is for its use.
 void halve(std::span<const Eigen::Vector3f> points,
            Eigen::Index axis,
            std::size_t half,
-           Order order) {
-  using Along = std::pair<float, std::uint32_t>;  // beside one another: compared again and again
-  std::vector<Along> along;
-  along.reserve(order.size());
-  for (const std::uint32_t i : order) along.emplace_back(points[i][axis], i);
-  std::nth_element(along.begin(), along.begin() + static_cast<std::ptrdiff_t>(half), along.end());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = along[i].second;
+           Order order,
+           std::vector<std::uint64_t>& words) {
+  words.clear();
+  for (const std::uint32_t i : order) {
+    words.push_back(~(static_cast<std::uint64_t>(rising(points[i][axis])) << 32U | i));
+  }
+  put_largest_first(words, half);
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(~words[i]);
 }
 
 // Halves the points across their longest side until each part is a block; the parts stay in order.
 void split(std::span<const Eigen::Vector3f> points,
            Order order,
            std::uint32_t begin,
+           std::vector<std::uint64_t>& words,
            std::vector<SightSurface::Block>& blocks) {
   Eigen::AlignedBox3f box;
   for (const std::uint32_t i : order) box.extend(points[i]);
@@ -46,9 +57,9 @@ void split(std::span<const Eigen::Vector3f> points,
   Eigen::Index axis = 0;
   box.sizes().maxCoeff(&axis);
   const std::size_t half = order.size() / 2;
-  halve(points, axis, half, order);
-  split(points, order.first(half), begin, blocks);
-  split(points, order.subspan(half), begin + static_cast<std::uint32_t>(half), blocks);
+  halve(points, axis, half, order, words);
+  split(points, order.first(half), begin, words, blocks);
+  split(points, order.subspan(half), begin + static_cast<std::uint32_t>(half), words, blocks);
 }
 
 // Puts points at least `apart_m` from one another first; returns how many.
@@ -76,7 +87,8 @@ SightSurface::SightSurface(std::span<const Eigen::Vector3f> points,
   if (points.empty()) return;
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0U);
-  split(points, order, 0, blocks_);
+  std::vector<std::uint64_t> words;
+  split(points, order, 0, words, blocks_);
   if (spacing_m > 0.0) {
     constexpr double kApart = 1.6;  // spacings: what is left lies about twice as far apart
     for (Block& block : blocks_) {

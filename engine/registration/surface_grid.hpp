@@ -181,7 +181,10 @@ class SurfaceGrid {
   void measure_block(const Block& block,
                      const Cell& low,
                      std::array<float, kBlockCells>& nearest) const;
-  void fill_block(Block& block, const Cell& place, std::span<const std::uint32_t> surfels) const;
+  void fill_block(Block& block,
+                  const Cell& place,
+                  bool is_new,
+                  std::span<const std::uint32_t> surfels) const;
 
   float cell_m_;
   float inverse_cell_;
