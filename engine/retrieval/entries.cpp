@@ -31,14 +31,12 @@ void Entries::load(std::span<const std::size_t> which,
   alone.threads = 1;
   alone.progress = nullptr;
   std::vector<std::shared_ptr<const Entry>> loaded(which.size());
-  parallel_chunks(which.size(), context.threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      context.check("load");
-      try {
-        loaded[i] = cache_->get(which[i], parts, alone);
-      } catch (const Error& error) {
-        if (error.code() != ErrorCode::kDataLoss) throw;
-      }
+  parallel_each(which.size(), context.threads, [&](std::size_t i) {
+    context.check("load");
+    try {
+      loaded[i] = cache_->get(which[i], parts, alone);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::kDataLoss) throw;
     }
   });
   for (std::size_t i = 0; i < which.size(); ++i) {

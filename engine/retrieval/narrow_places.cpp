@@ -17,11 +17,11 @@ namespace {
 constexpr std::size_t kKeypoints = 400;
 constexpr std::size_t kNeighbours = 200;
 // Proposals settled on the wide grids: shared among the places, and at least so many of each.
-constexpr std::size_t kTried = 16'000;
+constexpr std::size_t kTried = 8'000;
 constexpr std::size_t kTriedAtLeast = 16;
-// The first test is that of settle_best, the last one finer than its grid's cell, as the pose has
-// been settled by then.
-constexpr std::size_t kFirstPoints = 48;
+// The first test is that of settle_best with fewer points, the last one finer than its grid's cell,
+// as the pose has been settled by then.
+constexpr std::size_t kFirstPoints = 32;
 constexpr ScoreOptions kFirst{.sigma_cells = 1.0F, .first_look = 16, .hopeless = 0.2F};
 constexpr std::size_t kLastPoints = 400;
 constexpr double kLastSigmaVoxels = 1.2;
@@ -120,29 +120,42 @@ std::vector<PlaceScore> place_scores(const SearchInput& input,
   for (const Level& one : input.levels) places += one.entries.size();
   const std::size_t most_tried = std::max(kTriedAtLeast, kTried / places);
   std::vector<PlaceScore> scores(level.entries.size());
-  parallel_chunks(scores.size(), input.context.threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      input.context.check("pose");
-      scores[i].entry = level.entries[i];
-      if (pairs[i].empty() || !input.wanted[scores[i].entry]) continue;
-      scores[i].score =
-          score_of(input, input.entries[scores[i].entry], view.test, query, pairs[i], most_tried);
-    }
+  parallel_each(scores.size(), input.context.threads, [&](std::size_t i) {
+    input.context.check("pose");
+    scores[i].entry = level.entries[i];
+    if (pairs[i].empty() || !input.wanted[scores[i].entry]) return;
+    scores[i].score =
+        score_of(input, input.entries[scores[i].entry], view.test, query, pairs[i], most_tried);
   });
   std::erase_if(scores, [&](const PlaceScore& one) { return !input.wanted[one.entry]; });
+  set_standings(scores);
   return scores;
+}
+
+void set_standings(std::span<PlaceScore> of_level) {
+  if (of_level.empty()) return;
+  std::vector<double> sorted;
+  for (const PlaceScore& one : of_level) sorted.push_back(one.score);
+  const auto low = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 4);
+  std::nth_element(sorted.begin(), low, sorted.end());
+  constexpr double kLeastLeft = 1e-3;
+  const double left = std::max(1.0 - *low, kLeastLeft);
+  for (PlaceScore& one : of_level) one.standing = (one.score - *low) / left;
 }
 
 std::vector<std::size_t> best_places(std::span<const PlaceScore> scores, std::size_t most) {
   std::vector<PlaceScore> order(scores.begin(), scores.end());
   std::stable_sort(order.begin(), order.end(), [](const PlaceScore& a, const PlaceScore& b) {
-    return a.score > b.score;
+    return a.standing > b.standing;
   });
   if (order.size() > most) order.resize(most);
-  constexpr double kLeastOfBest = 0.9;
+  // Of 40 frames in a hundred places and 40 in a thousand the right one is in 68 among the ten that
+  // stand highest, and never with less than 0.73 of the highest; five places have more than 0.6 of
+  // it in the mean.
+  constexpr double kLeastOfBest = 0.6;
   std::vector<std::size_t> best;
   for (const PlaceScore& one : order) {
-    if (one.score >= kLeastOfBest * order.front().score) best.push_back(one.entry);
+    if (one.standing >= kLeastOfBest * order.front().standing) best.push_back(one.entry);
   }
   std::sort(best.begin(), best.end());
   return best;

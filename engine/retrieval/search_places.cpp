@@ -59,6 +59,7 @@ bool is_by_codes(const QueryOptions& options) {
 // Some places of a level, to be searched as if there were no others.
 struct AskedPlaces {
   const Level& level;
+  const QueryView& view;             // the query as these places are described
   std::vector<std::size_t> entries;  // ascending
   bool narrowed = false;             // they are what seemed likely
   bool in_index = true;              // the level's index will do
@@ -75,11 +76,9 @@ struct AskedPlaces {
 };
 
 // The k nearest stored descriptors of each of the query's, sorted out by entry.
-void match_places_of(const SearchInput& input,
-                     const AskedPlaces& asked,
-                     const QueryView& view,
-                     SearchResult& result) {
+void match_places_of(const SearchInput& input, const AskedPlaces& asked, SearchResult& result) {
   const StageTimer timer(input.timings.match);
+  const QueryView& view = asked.view;
   const std::size_t k =
       neighbours_for(asked.entries.size(), asked.narrowed, view.descriptors.size());
   const std::vector<float>& queries = view.descriptors.values;
@@ -118,6 +117,46 @@ std::size_t wanted_places(const SearchInput& input) {
         }));
   }
   return count;
+}
+
+// The wanted places, level by level, of those levels that the query can be described for.
+std::vector<AskedPlaces> asked_places(const SearchInput& input, SearchResult& result) {
+  std::vector<AskedPlaces> all;
+  for (const Level& level : input.levels) {
+    std::vector<std::size_t> entries;
+    std::copy_if(level.entries.begin(),
+                 level.entries.end(),
+                 std::back_inserter(entries),
+                 [&](std::size_t entry) { return input.wanted[entry]; });
+    if (entries.empty()) continue;
+    if (input.query.scale.spacing_m > kMostSpacingVoxelsOfPlace * level.options.voxel_m) {
+      result.lost_at = "density";
+      result.needs_voxel_m = input.query.scale.spacing_m / kMostSpacingVoxelsOfPlace;
+      continue;
+    }
+    const QueryView& view = input.views.at(query_features(level.options, input.options));
+    if (view.prepared.size() < kFewestVoxels || view.descriptors.size() == 0) continue;
+    all.push_back({level, view, std::move(entries)});
+  }
+  return all;
+}
+
+// Leaves the places that seem likely, whatever level they are of; of some levels none.
+void narrow_down(const SearchInput& input, std::vector<AskedPlaces>& asked) {
+  std::vector<PlaceScore> scores;
+  for (AskedPlaces& places : asked) {
+    if (places.entries.size() <= kFewOfLevel) continue;
+    places.narrowed = true;
+    const std::vector<PlaceScore> of_level = place_scores(input, places.level, places.view);
+    scores.insert(scores.end(), of_level.begin(), of_level.end());
+  }
+  const std::vector<std::size_t> best = best_places(scores, kMostPlaces);
+  for (AskedPlaces& places : asked) {
+    if (!places.narrowed) continue;
+    std::erase_if(places.entries, [&](std::size_t entry) {
+      return !std::binary_search(best.begin(), best.end(), entry);
+    });
+  }
 }
 
 // Planes propose as many poses of a place as all its pairs do: they are tried in those places that
@@ -204,34 +243,17 @@ double common_tolerance_m(const SearchInput& input, const Entry& entry) {
 }
 
 void match_places(const SearchInput& input, SearchResult& result) {
-  const bool all_closely = wanted_places(input) <= kAllPlaces;
-  const std::size_t most_of_level =
-      std::max(kMostPlacesALevel, kMostPlaces / std::max<std::size_t>(input.levels.size(), 1));
-  for (const Level& level : input.levels) {
-    std::vector<std::size_t> asked;
-    std::copy_if(level.entries.begin(),
-                 level.entries.end(),
-                 std::back_inserter(asked),
-                 [&](std::size_t entry) { return input.wanted[entry]; });
-    if (asked.empty()) continue;
-    if (input.query.scale.spacing_m > kMostSpacingVoxelsOfPlace * level.options.voxel_m) {
-      result.lost_at = "density";
-      result.needs_voxel_m = input.query.scale.spacing_m / kMostSpacingVoxelsOfPlace;
-      continue;
-    }
-    const QueryView& view = input.views.at(query_features(level.options, input.options));
-    if (view.prepared.size() < kFewestVoxels || view.descriptors.size() == 0) continue;
-    AskedPlaces places{level, std::move(asked)};
-    places.narrowed = !all_closely && places.entries.size() > most_of_level;
-    if (places.narrowed) {
-      places.entries = best_places(place_scores(input, level, view), most_of_level);
-    } else if (!input.options.scenes.empty()) {
+  std::vector<AskedPlaces> asked = asked_places(input, result);
+  if (wanted_places(input) > kAllPlaces) narrow_down(input, asked);
+  for (AskedPlaces& places : asked) {
+    if (places.entries.empty()) continue;
+    if (!places.narrowed && !input.options.scenes.empty()) {
       // What is asked of named scenes must not depend on the others, so that it is not left to
       // codes without tails.
-      places.in_index =
-          level.index->has_tails() && rows_of(input.entries, places.entries) <= kMostScannedRows;
+      places.in_index = places.level.index->has_tails() &&
+                        rows_of(input.entries, places.entries) <= kMostScannedRows;
     }
-    match_places_of(input, places, view, result);
+    match_places_of(input, places, result);
   }
 }
 
