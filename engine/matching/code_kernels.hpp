@@ -26,9 +26,16 @@ struct PackedCodes {
   void append(std::span<const std::int8_t> codes);
 };
 
-struct CodeHit {
-  std::int32_t score = 0;
-  std::uint32_t place = 0;  // counted from the first group given
+// Codes that were found, each with its score, and its place counted from the first group given.
+struct CodeHits {
+  std::vector<std::int32_t> scores;
+  std::vector<std::uint32_t> places;
+
+  // Room for hits among so many codes: kernels write a whole group at a time.
+  void make_room(std::size_t codes) {
+    scores.resize(codes + kCodeGroup);
+    places.resize(codes + kCodeGroup);
+  }
 };
 
 // The score of a code b for a query a is 2 sum(a_j (b_j + 128)) - |b|^2: within one query it falls
@@ -41,14 +48,15 @@ struct CodeKernels {
                  const std::int32_t* bias,
                  std::size_t groups,
                  std::int32_t* out);
-  // Writes the codes whose score is above `floor`, in order; how many there are. `hits` has room
-  // for all.
+  // Writes the codes whose score is above `floor`, in order; how many there are. There is room for
+  // all and a group more; what lies behind the hits is left as it may be.
   std::size_t (*above)(const std::int8_t* query,
                        const std::uint8_t* bytes,
                        const std::int32_t* bias,
                        std::size_t groups,
                        std::int32_t floor,
-                       CodeHit* hits);
+                       std::int32_t* scores,
+                       std::uint32_t* places);
   // Squared distance of two codes, plainly one after the other.
   std::int32_t (*squared_distance)(const std::int8_t* a, const std::int8_t* b);
   // Writes the inner products of `row` with `count` rows of `components`, all of kShotLength.

@@ -272,7 +272,9 @@ class CodedIndexMaker::Index : public CodedIndex {
   // Compares the codes of one list after the other.
   class ListReader {
    public:
-    explicit ListReader(const Index& index) : index_(index), hits_(index.most_in_list_) {}
+    explicit ListReader(const Index& index) : index_(index) {
+      hits_.make_room(index.most_in_list_);
+    }
 
     void read(const Block& block,
               std::size_t list,
@@ -288,10 +290,11 @@ class CodedIndexMaker::Index : public CodedIndex {
                            index_.codes_.bias.data() + group * kCodeGroup,
                            index_.list_start_[list + 1] - group,
                            shortlist.floor(),
-                           hits_.data());
+                           hits_.scores.data(),
+                           hits_.places.data());
         for (std::size_t h = 0; h < count; ++h) {
-          const std::uint32_t row = rows[hits_[h].place];
-          if (row != kNoRow) shortlist.offer(make_candidate(hits_[h].score, row));
+          const std::uint32_t row = rows[hits_.places[h]];
+          if (row != kNoRow) shortlist.offer(make_candidate(hits_.scores[h], row));
         }
       }
     }
@@ -299,7 +302,7 @@ class CodedIndexMaker::Index : public CodedIndex {
    private:
     const Index& index_;
     const CodeKernels& kernels_ = code_kernels();
-    std::vector<CodeHit> hits_;
+    CodeHits hits_;
   };
 
   void read_lists(const Block& block,

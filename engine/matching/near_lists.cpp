@@ -37,7 +37,7 @@ void NearLists::choose(const std::int8_t* code,
   const std::size_t wanted = chosen.size();
   std::vector<CodeCandidate>& candidates = scratch.candidates;
   candidates.clear();
-  scratch.hits.resize(centres_.bias.size());
+  scratch.hits.make_room(centres_.bias.size());
   for (const std::int32_t floor : {likely_floor(code, wanted, scratch.scores), kLowest}) {
     if (candidates.size() >= wanted) break;
     candidates.clear();
@@ -46,10 +46,11 @@ void NearLists::choose(const std::int8_t* code,
                                                    centres_.bias.data(),
                                                    centres_.groups(),
                                                    floor,
-                                                   scratch.hits.data());
+                                                   scratch.hits.scores.data(),
+                                                   scratch.hits.places.data());
     for (std::size_t h = 0; h < count; ++h) {
-      const CodeHit& hit = scratch.hits[h];
-      if (hit.place < lists_) candidates.push_back(make_candidate(hit.score, hit.place));
+      const std::uint32_t list = scratch.hits.places[h];
+      if (list < lists_) candidates.push_back(make_candidate(scratch.hits.scores[h], list));
     }
   }
   put_largest_first(candidates, wanted);

@@ -15,7 +15,7 @@ class NearLists {
  public:
   // Memory that is used again from code to code; of one thread.
   struct Scratch {
-    std::vector<CodeHit> hits;
+    CodeHits hits;
     std::vector<std::int32_t> scores;
     std::vector<CodeCandidate> candidates;
   };

@@ -69,21 +69,23 @@ TEST(CodeKernels, FindThoseAboveAFloorInTheirOrder) {
     kernels->scores(
         query.data(), packed.bytes.data(), packed.bias.data(), packed.groups(), scores.data());
     const std::int32_t floor = scores[41];
-    std::vector<CodeHit> hits(packed.bias.size());
-    hits.resize(kernels->above(query.data(),
-                               packed.bytes.data(),
-                               packed.bias.data(),
-                               packed.groups(),
-                               floor,
-                               hits.data()));
+    CodeHits hits;
+    hits.make_room(packed.bias.size());
+    const std::size_t found = kernels->above(query.data(),
+                                             packed.bytes.data(),
+                                             packed.bias.data(),
+                                             packed.groups(),
+                                             floor,
+                                             hits.scores.data(),
+                                             hits.places.data());
     std::size_t next = 0;
     for (std::uint32_t i = 0; i < 100; ++i) {
       if (scores[i] <= floor) continue;
-      ASSERT_LT(next, hits.size());
-      EXPECT_EQ(hits[next].place, i);
-      EXPECT_EQ(hits[next++].score, scores[i]);
+      ASSERT_LT(next, found);
+      EXPECT_EQ(hits.places[next], i);
+      EXPECT_EQ(hits.scores[next++], scores[i]);
     }
-    EXPECT_EQ(next, hits.size());
+    EXPECT_EQ(next, found);
   }
 }
 
