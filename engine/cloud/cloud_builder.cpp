@@ -33,13 +33,41 @@ CloudBuilder::CloudBuilder(double metres, const Eigen::Isometry3d& T_world_file)
       T_world_file_(T_world_file),
       identity_(T_world_file.matrix() == Eigen::Matrix4d::Identity()) {}
 
+void CloudBuilder::hand_to(const CloudSink& sink, std::span<const Eigen::Vector3d> viewpoints) {
+  sink_ = &sink;
+  viewpoints_.assign(viewpoints.begin(), viewpoints.end());
+}
+
 void CloudBuilder::reserve(std::size_t points, bool normals, bool colours) {
+  expected_ = points;
+  normals_ = normals;
+  colours_ = colours;
+  reserve_block();
+}
+
+void CloudBuilder::reserve_block() {
+  const std::size_t most = sink_ != nullptr ? sink_->block_points : expected_;
+  const std::size_t points = std::min(most, expected_ - std::min(expected_, handed_));
   cloud_.points.reserve(points);
-  if (normals) cloud_.normals.reserve(points);
-  if (colours) cloud_.colours.reserve(points);
+  if (normals_) cloud_.normals.reserve(points);
+  if (colours_) cloud_.colours.reserve(points);
+}
+
+PointCloud CloudBuilder::take_block(std::span<const Eigen::Vector3d> viewpoints) {
+  for (const Eigen::Vector3d& viewpoint : viewpoints) {
+    cloud_.viewpoints.push_back(to_local(metres_ * viewpoint, cloud_.origin));
+  }
+  return std::exchange(cloud_, {});
 }
 
 void CloudBuilder::add_point(const Eigen::Vector3d& p_file) {
+  if (sink_ != nullptr && cloud_.points.size() >= sink_->block_points) {
+    const Eigen::Vector3d origin = cloud_.origin;
+    handed_ += cloud_.points.size();
+    sink_->take(take_block(viewpoints_));
+    cloud_.origin = origin;
+    reserve_block();
+  }
   const Eigen::Vector3d p =
       metres_ * (identity_ ? p_file : Eigen::Vector3d(T_world_file_ * p_file));
   if (decided_) {
@@ -84,10 +112,7 @@ void CloudBuilder::decide_origin() {
 
 PointCloud CloudBuilder::finish(std::span<const Eigen::Vector3d> viewpoints) {
   if (!decided_) decide_origin();
-  for (const Eigen::Vector3d& viewpoint : viewpoints) {
-    cloud_.viewpoints.push_back(to_local(metres_ * viewpoint, cloud_.origin));
-  }
-  return std::exchange(cloud_, {});
+  return take_block(viewpoints);
 }
 
 }  // namespace landmarkdb

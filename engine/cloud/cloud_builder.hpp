@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "engine/cloud/read_cloud.hpp"
 #include "engine/types/point_cloud.hpp"
 
 namespace landmarkdb {
@@ -27,18 +28,27 @@ class CloudBuilder {
   explicit CloudBuilder(double metres,
                         const Eigen::Isometry3d& T_world_file = Eigen::Isometry3d::Identity());
 
+  // From now on whole blocks are handed to the sink, which must outlive the builder, and finish
+  // returns what is left. `viewpoints` as there.
+  void hand_to(const CloudSink& sink, std::span<const Eigen::Vector3d> viewpoints);
+  // Whether that has happened to a block.
+  bool in_blocks() const { return handed_ > 0; }
+
   void reserve(std::size_t points, bool normals, bool colours);
+  // What else a point has is added before the next point.
   void add_point(const Eigen::Vector3d& p_file);
   void add_normal(const Eigen::Vector3d& n_file);
   void add_colour(const std::array<std::uint8_t, 3>& colour);
   void add_viewpoint_index(std::uint16_t index);
-  std::size_t size() const { return cloud_.points.size() + pending_.size(); }
+  std::size_t size() const { return handed_ + cloud_.points.size() + pending_.size(); }
 
   // `viewpoints` in file units, world frame. The builder is empty afterwards.
   PointCloud finish(std::span<const Eigen::Vector3d> viewpoints);
 
  private:
   void decide_origin();
+  void reserve_block();
+  PointCloud take_block(std::span<const Eigen::Vector3d> viewpoints);
 
   double metres_;
   Eigen::Isometry3d T_world_file_;
@@ -46,6 +56,11 @@ class CloudBuilder {
   bool decided_ = false;
   std::vector<Eigen::Vector3d> pending_;  // world frame, metres; until the origin is decided
   PointCloud cloud_;
+  const CloudSink* sink_ = nullptr;
+  std::vector<Eigen::Vector3d> viewpoints_;  // of the sink's blocks
+  std::size_t handed_ = 0;                   // points
+  std::size_t expected_ = 0;                 // what is reserved for, of all blocks together
+  bool normals_ = false, colours_ = false;
 };
 
 }  // namespace landmarkdb

@@ -42,49 +42,62 @@ void check_count(const Input& input,
   }
 }
 
+InputFile::InputFile(const std::filesystem::path& path, std::uint64_t max_bytes)
+    : name_(path.string()) {
+  struct stat info {};
+  if (::stat(name_.c_str(), &info) != 0) {
+    throw Error(ErrorCode::kInvalidArgument, name_ + ": cannot be read: " + std::strerror(errno));
+  }
+  if (!S_ISREG(info.st_mode)) {
+    throw Error(ErrorCode::kInvalidArgument, name_ + ": is not a regular file");
+  }
+  file_.reset(std::fopen(name_.c_str(), "rb"));
+  if (!file_) {
+    throw Error(ErrorCode::kInvalidArgument, name_ + ": cannot be read: " + std::strerror(errno));
+  }
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // it is read in large pieces
+  size_ = static_cast<std::uint64_t>(info.st_size);
+  if (size_ > max_bytes) {
+    throw Error(ErrorCode::kInvalidArgument,
+                name_ + ": has " + std::to_string(size_) + " bytes, want at most " +
+                    std::to_string(max_bytes));
+  }
+}
+
+std::size_t InputFile::read(std::uint64_t offset, std::span<std::byte> to) const {
+  const bool there = ::fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) == 0;
+  const std::size_t got = there ? std::fread(to.data(), 1, to.size(), file_.get()) : 0;
+  if (!there || (got < to.size() && std::ferror(file_.get()) != 0)) {
+    throw Error(ErrorCode::kInvalidArgument, name_ + ": cannot be read: " + std::strerror(errno));
+  }
+  return got;
+}
+
+FileBytes read_front(const InputFile& file, std::uint64_t bytes, const RunContext& context) {
+  FileBytes front;
+  const auto size = static_cast<std::size_t>(std::min(bytes, file.size()));
+  try {
+    front.data = std::make_unique_for_overwrite<std::byte[]>(size);
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorCode::kResourceExhausted,
+                file.name() + ": no memory for its " + std::to_string(size) + " bytes");
+  }
+  constexpr std::size_t kChunk = std::size_t{16} * 1024 * 1024;  // a tenth of a second of a disk
+  while (front.size < size) {
+    context.check("read");
+    const std::size_t wanted = std::min<std::size_t>(kChunk, size - front.size);
+    const std::size_t got = file.read(front.size, {front.data.get() + front.size, wanted});
+    front.size += got;
+    if (got < wanted) break;
+  }
+  return front;
+}
+
 FileBytes read_whole_file(const std::filesystem::path& path,
                           std::uint64_t max_bytes,
                           const RunContext& context) {
-  const std::string name = path.string();
-  struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  struct stat info {};
-  if (::stat(name.c_str(), &info) != 0) {
-    throw Error(ErrorCode::kInvalidArgument, name + ": cannot be read: " + std::strerror(errno));
-  }
-  if (!S_ISREG(info.st_mode)) {
-    throw Error(ErrorCode::kInvalidArgument, name + ": is not a regular file");
-  }
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(name.c_str(), "rb"));
-  if (!file) {
-    throw Error(ErrorCode::kInvalidArgument, name + ": cannot be read: " + std::strerror(errno));
-  }
-  const auto size = static_cast<std::uint64_t>(info.st_size);
-  if (size > max_bytes) {
-    throw Error(ErrorCode::kInvalidArgument,
-                name + ": has " + std::to_string(size) + " bytes, want at most " +
-                    std::to_string(max_bytes));
-  }
-  FileBytes bytes;
-  try {
-    bytes.data = std::make_unique_for_overwrite<std::byte[]>(size);
-  } catch (const std::bad_alloc&) {
-    throw Error(ErrorCode::kResourceExhausted,
-                name + ": no memory for its " + std::to_string(size) + " bytes");
-  }
-  constexpr std::size_t kChunk = std::size_t{16} * 1024 * 1024;  // a tenth of a second of a disk
-  while (bytes.size < size) {
-    context.check("read");
-    const std::size_t wanted = std::min<std::size_t>(kChunk, size - bytes.size);
-    const std::size_t got = std::fread(bytes.data.get() + bytes.size, 1, wanted, file.get());
-    bytes.size += got;
-    if (got < wanted) break;
-  }
-  if (bytes.size != size && std::ferror(file.get()) != 0) {
-    throw Error(ErrorCode::kInvalidArgument, name + ": cannot be read: " + std::strerror(errno));
-  }
-  return bytes;
+  const InputFile file(path, max_bytes);
+  return read_front(file, file.size(), context);
 }
 
 }  // namespace landmarkdb

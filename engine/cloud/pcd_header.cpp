@@ -205,7 +205,7 @@ PcdHeader parse_pcd_header(const Input& input, std::uint64_t max_points) {
   header.data = take_data(input, lines.data);
   if (header.record_values == 0) refuse(input, "PCD header: the fields have no values");
   constexpr std::uint64_t kLeastTextBytes = 2;  // a digit and a blank
-  const std::uint64_t left = input.bytes.size() - header.body;
+  const std::uint64_t left = input.size() - header.body;
   switch (header.data) {
     case PcdData::kAscii:
       // The last number of the file needs no blank after it.

@@ -108,7 +108,7 @@ void parse_comment(std::string_view rest, PlyHeader& header) {
 }
 
 void check_promises(const Input& input, const PlyHeader& header, std::uint64_t max_points) {
-  std::uint64_t available = input.bytes.size() - header.body;
+  std::uint64_t available = input.size() - header.body;
   // The last number of an ascii file needs no blank after it.
   if (header.format == PlyFormat::kAscii) ++available;
   for (const PlyElement& element : header.elements) {

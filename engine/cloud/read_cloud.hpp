@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -21,6 +23,8 @@ struct ReadOptions {
   std::uint64_t max_points =
       200'000'000;              // checked against the header before anything is allocated
   double mesh_spacing_m = 0.0;  // distance between samples of a mesh; 0: a 300th of its diagonal
+  // How much of a larger file is in memory at once; its header has to fit.
+  std::size_t window_bytes = std::size_t{8} << 20U;
 };
 
 // Reads a PCD, PLY, XYZ/PTS text cloud, or an OBJ, STL or PLY mesh (sampled evenly over its
@@ -42,8 +46,24 @@ PointCloud read_cloud(const std::filesystem::path& path,
                       const ReadOptions& options,
                       const RunContext& context = {});
 
-// The same for a file that is in memory. `name` is what messages call it; its extension helps where
-// the content does not tell the format.
+// Whom a reader hands the points to, in the file's order, as they are read.
+struct CloudSink {
+  // What a block has, but for the last, which has fewer, and the first, which has thousands at
+  // least. All have the same origin and viewpoints; a cloud of one block alone stays organised.
+  std::size_t block_points = std::numeric_limits<std::size_t>::max();
+  std::function<void(PointCloud)> take;  // what it throws ends the reading
+};
+
+// read_cloud for a file of which no more than a block and a few megabytes are to be in memory.
+// Three are held whole all the same: OBJ, STL and PLY meshes, with what is sampled from them, as
+// one block; and the body of a compressed PCD file, packed and unpacked, which is at most 4 GiB.
+void read_cloud_in_blocks(const std::filesystem::path& path,
+                          const ReadOptions& options,
+                          const RunContext& context,
+                          const CloudSink& sink);
+
+// read_cloud for a file that is in memory. `name` is what messages call it; its extension helps
+// where the content does not tell the format.
 PointCloud parse_cloud(std::span<const std::byte> bytes,
                        std::string_view name,
                        const ReadOptions& options,

@@ -7,12 +7,13 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/cloud/byte_window.hpp"
 #include "engine/cloud/cloud_builder.hpp"
 #include "engine/cloud/lzf.hpp"
 #include "engine/cloud/pcd_header.hpp"
-#include "engine/cloud/text_lines.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -50,39 +51,22 @@ Roles find_roles(const Input& input, const PcdHeader& header) {
 // Gives a field's first value, point after point, whatever the kind of data.
 class PointReader {
  public:
-  PointReader(const Input& input, const PcdHeader& header) : input_(input), header_(header) {
-    switch (header.data) {
-      case PcdData::kAscii:
-        rest_ = input.text().substr(header.body);
-        row_.resize(header.record_values);
-        break;
-      case PcdData::kBinary:
-        records_ = input.bytes.data() + header.body;
-        break;
-      case PcdData::kCompressed:
-        unpack();
-        break;
-    }
+  PointReader(const Input& input, const PcdHeader& header)
+      : input_(input), header_(header), window_(input, header.body) {
+    if (header.data == PcdData::kAscii) row_.resize(header.record_values);
+    if (header.data == PcdData::kCompressed) unpack();
   }
 
   // Steps to point `i`; called once for each, in order.
   void go_to(std::uint64_t i) {
     point_ = static_cast<std::size_t>(i);
-    if (header_.data != PcdData::kAscii) return;
-    for (double& value : row_) {
-      const std::string_view word = take_word(rest_);
-      if (word.empty()) {
-        refuse(input_,
-               "PCD data ends at point " + std::to_string(i) + " of " +
-                   std::to_string(header_.points));
-      }
-      const std::optional<double> number = parse_number(word);
-      if (!number) {
-        refuse(
-            input_,
-            "PCD data: point " + std::to_string(i) + " has " + in_quotes(word) + ", want a number");
-      }
-      value = *number;
+    switch (header_.data) {
+      case PcdData::kAscii:
+        return read_row(i);
+      case PcdData::kBinary:
+        return take_record(i);
+      case PcdData::kCompressed:
+        return;
     }
   }
 
@@ -91,8 +75,7 @@ class PointReader {
       case PcdData::kAscii:
         return row_[field.column];
       case PcdData::kBinary:
-        return load_scalar(
-            records_ + point_ * header_.record_bytes + field.offset, field.type, false);
+        return load_scalar(record_ + field.offset, field.type, false);
       case PcdData::kCompressed:  // field after field, each for all points
         return load_scalar(unpacked_.get() +
                                field.offset * static_cast<std::size_t>(header_.points) +
@@ -104,11 +87,37 @@ class PointReader {
   }
 
  private:
+  [[noreturn]] void refuse_end(std::uint64_t i) const {
+    refuse(input_,
+           "PCD data ends at point " + std::to_string(i) + " of " + std::to_string(header_.points));
+  }
+
+  void take_record(std::uint64_t i) {
+    const std::span<const std::byte> bytes = window_.ahead(header_.record_bytes);
+    if (bytes.size() < header_.record_bytes) refuse_end(i);
+    record_ = bytes.data();
+    window_.skip(header_.record_bytes);
+  }
+
+  void read_row(std::uint64_t i) {
+    for (double& value : row_) {
+      const std::string_view word = take_word(window_);
+      if (word.empty()) refuse_end(i);
+      const std::optional<double> number = parse_number(word);
+      if (!number) {
+        refuse(
+            input_,
+            "PCD data: point " + std::to_string(i) + " has " + in_quotes(word) + ", want a number");
+      }
+      value = *number;
+    }
+  }
+
   void unpack() {
-    const std::size_t left = input_.bytes.size() - header_.body;
+    const std::uint64_t left = window_.left();
     constexpr std::size_t kSizes = 8;  // packed and unpacked size, 32 bits each
     if (left < kSizes) refuse(input_, "PCD data: the compressed block is cut off");
-    const std::byte* at = input_.bytes.data() + header_.body;
+    const std::byte* at = window_.ahead(kSizes).data();
     const auto packed = static_cast<std::size_t>(load_scalar(at, ScalarType::kUint32, false));
     const auto size = static_cast<std::size_t>(load_scalar(at + 4, ScalarType::kUint32, false));
     if (packed > left - kSizes) {
@@ -124,16 +133,18 @@ class PointReader {
                  std::to_string(want));
     }
     unpacked_ = std::make_unique_for_overwrite<std::byte[]>(size);
-    if (!lzf_decompress({at + kSizes, packed}, {unpacked_.get(), size})) {
+    const std::span<const std::byte> body = window_.ahead(kSizes + packed);
+    if (body.size() < kSizes + packed ||
+        !lzf_decompress(body.subspan(kSizes, packed), {unpacked_.get(), size})) {
       refuse(input_, "PCD data: the compressed block is damaged");
     }
   }
 
   const Input& input_;
   const PcdHeader& header_;
-  std::string_view rest_;
+  ByteWindow window_;
   std::vector<double> row_;
-  const std::byte* records_ = nullptr;
+  const std::byte* record_ = nullptr;
   std::unique_ptr<std::byte[]> unpacked_;
   std::size_t point_ = 0;
 };
@@ -170,16 +181,23 @@ std::array<std::uint8_t, 3> take_colour(const PointReader& reader, const Roles& 
 
 }  // namespace
 
-PointCloud parse_pcd(const Input& input, const ReadOptions& options) {
+void parse_pcd(const Input& input, const ReadOptions& options, const CloudSink& sink) {
   const PcdHeader header = parse_pcd_header(input, options.max_points);
   if (header.points == 0) refuse(input, "PCD header: no points");
   const Roles roles = find_roles(input, header);
   const bool normals = complete(roles.normal);
   const bool colours = roles.packed_colour != nullptr || complete(roles.colour);
+  // An identity VIEWPOINT stands in nearly every PCD file, maps too; only a picture (rows and
+  // columns) was surely taken from there.
+  const bool organised = header.height > 1;
+  const bool known = organised || header.T_world_sensor.matrix() != Eigen::Matrix4d::Identity();
+  const Eigen::Vector3d viewpoint = header.T_world_sensor.translation();
+  const std::span<const Eigen::Vector3d> viewpoints(&viewpoint, known ? 1 : 0);
   PointReader reader(input, header);
   CloudBuilder builder(metres_per(options.units), header.T_world_sensor);
+  builder.hand_to(sink, viewpoints);
   builder.reserve(static_cast<std::size_t>(header.points), normals, colours);
-  const std::uint64_t bytes_each = input.bytes.size() / header.points;  // for the progress
+  const std::uint64_t bytes_each = input.size() / header.points;  // for the progress
   for (std::uint64_t i = 0; i < header.points; ++i) {
     input.tick(i, i * bytes_each);
     reader.go_to(i);
@@ -187,18 +205,12 @@ PointCloud parse_pcd(const Input& input, const ReadOptions& options) {
     if (normals) builder.add_normal(take(reader, roles.normal));
     if (colours) builder.add_colour(take_colour(reader, roles));
   }
-  // An identity VIEWPOINT stands in nearly every PCD file, maps too; only a picture (rows and
-  // columns) was surely taken from there.
-  const bool organised = header.height > 1;
-  const bool known = organised || header.T_world_sensor.matrix() != Eigen::Matrix4d::Identity();
-  const Eigen::Vector3d viewpoint = header.T_world_sensor.translation();
-  PointCloud cloud = builder.finish(known ? std::span<const Eigen::Vector3d>(&viewpoint, 1)
-                                          : std::span<const Eigen::Vector3d>());
-  if (organised) {
-    cloud.width = header.width;
-    cloud.height = header.height;
+  PointCloud last = builder.finish(viewpoints);
+  if (organised && !builder.in_blocks()) {
+    last.width = header.width;
+    last.height = header.height;
   }
-  return cloud;
+  sink.take(std::move(last));
 }
 
 }  // namespace landmarkdb

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/cloud/byte_window.hpp"
 #include "engine/cloud/cloud_builder.hpp"
 #include "engine/cloud/mesh.hpp"
 #include "engine/cloud/ply_header.hpp"
-#include "engine/cloud/text_lines.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -22,7 +22,7 @@ constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 class BodyReader {
  public:
   BodyReader(const Input& input, const PlyHeader& header)
-      : input_(input), format_(header.format), at_(header.body) {}
+      : input_(input), format_(header.format), window_(input, header.body) {}
 
   double next(ScalarType type) {
     return format_ == PlyFormat::kAscii ? next_word() : next_binary(type);
@@ -33,14 +33,14 @@ class BodyReader {
       for (std::uint64_t i = 0; i < count; ++i) next_word();
       return;
     }
-    if (count > (input_.bytes.size() - at_) / scalar_size(type)) refuse_end();
-    at_ += static_cast<std::size_t>(count) * scalar_size(type);
+    if (count > window_.left() / scalar_size(type)) refuse_end();
+    window_.skip(count * scalar_size(type));
   }
 
   // How many items the list that starts here has; at most as many as the file can still hold.
   std::uint64_t next_count(const PlyProperty& list) {
     const double count = next(*list.count_type);
-    const double left = static_cast<double>(input_.bytes.size() - at_);
+    const double left = static_cast<double>(window_.left());
     if (!(count >= 0.0 && count <= left && count == std::floor(count))) {
       refuse(input_,
              "PLY list " + in_quotes(list.name) + " of " + std::to_string(count) +
@@ -49,7 +49,7 @@ class BodyReader {
     return static_cast<std::uint64_t>(count);
   }
 
-  std::size_t at() const { return at_; }
+  std::uint64_t at() const { return window_.at(); }
 
  private:
   [[noreturn]] void refuse_end() const {
@@ -57,18 +57,15 @@ class BodyReader {
   }
 
   double next_binary(ScalarType type) {
-    if (input_.bytes.size() - at_ < scalar_size(type)) refuse_end();
-    const double value =
-        load_scalar(input_.bytes.data() + at_, type, format_ == PlyFormat::kBigEndian);
-    at_ += scalar_size(type);
-    return value;
+    const std::span<const std::byte> bytes = window_.ahead(scalar_size(type));
+    if (bytes.size() < scalar_size(type)) refuse_end();
+    window_.skip(scalar_size(type));
+    return load_scalar(bytes.data(), type, format_ == PlyFormat::kBigEndian);
   }
 
   double next_word() {
-    std::string_view rest = input_.text().substr(at_);
-    const std::string_view word = take_word(rest);
+    const std::string_view word = take_word(window_);
     if (word.empty()) refuse_end();
-    at_ = input_.bytes.size() - rest.size();
     const std::optional<double> value = parse_number(word);
     if (!value) refuse(input_, "PLY data: " + in_quotes(word) + " is no number");
     return *value;
@@ -76,7 +73,7 @@ class BodyReader {
 
   const Input& input_;
   PlyFormat format_;
-  std::size_t at_;
+  ByteWindow window_;
 };
 
 // Which column of a vertex means what; kNone where there is no such column.
@@ -167,16 +164,18 @@ std::uint16_t take_viewpoint(const Input& input, double value, std::size_t viewp
   return static_cast<std::uint16_t>(value);
 }
 
-PointCloud read_points(const Input& input,
-                       const PlyHeader& header,
-                       const PlyElement& vertices,
-                       BodyReader& body,
-                       const ReadOptions& options) {
+void read_points(const Input& input,
+                 const PlyHeader& header,
+                 const PlyElement& vertices,
+                 BodyReader& body,
+                 const ReadOptions& options,
+                 const CloudSink& sink) {
   const Columns columns = find_columns(input, vertices);
   const bool normals = complete(columns.normal);
   const bool colours = complete(columns.colour);
   const bool numbered = columns.viewpoint != kNone && header.viewpoints.size() > 1;
   CloudBuilder builder(metres_per(options.units));
+  builder.hand_to(sink, header.viewpoints);
   builder.reserve(vertices.count, normals, colours);
   std::vector<double> row(vertices.properties.size());
   for (std::uint64_t i = 0; i < vertices.count; ++i) {
@@ -190,7 +189,7 @@ PointCloud read_points(const Input& input,
           take_viewpoint(input, row[columns.viewpoint], header.viewpoints.size()));
     }
   }
-  return builder.finish(header.viewpoints);
+  sink.take(builder.finish(header.viewpoints));
 }
 
 void read_mesh_vertices(const Input& input,
@@ -304,18 +303,18 @@ Mesh parse_ply_polygons(const Input& input, const ReadOptions& options) {
   return mesh;
 }
 
-PointCloud parse_ply(const Input& input, const ReadOptions& options) {
+void parse_ply(const Input& input, const ReadOptions& options, const CloudSink& sink) {
   const PlyHeader header = parse_ply_header(input, options.max_points);
   const auto vertices = find_vertices(input, header);
   if (has_faces(input, header, *vertices)) {
     Mesh mesh;
     read_mesh(input, header, *vertices, mesh);
-    return sample_mesh(input, mesh, options);
+    return sink.take(sample_mesh(input, mesh, options));
   }
   BodyReader body(input, header);
   for (const PlyElement& element : header.elements) {
     // Nothing after the vertices matters where there are no faces.
-    if (&element == &*vertices) return read_points(input, header, element, body, options);
+    if (&element == &*vertices) return read_points(input, header, element, body, options, sink);
     skip_element(input, body, element);
   }
   refuse(input, "PLY header: no vertices");

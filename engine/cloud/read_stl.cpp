@@ -42,7 +42,7 @@ void add_corner(Mesh& mesh, const Eigen::Vector3d& corner) {
 
 bool is_binary_stl(const Input& input) {
   return input.bytes.size() > kHeaderBytes &&
-         triangle_count(input) * kTriangleBytes + kHeaderBytes == input.bytes.size();
+         triangle_count(input) * kTriangleBytes + kHeaderBytes == input.size();
 }
 
 PointCloud parse_binary_stl(const Input& input, const ReadOptions& options) {

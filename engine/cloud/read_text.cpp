@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/cloud/byte_window.hpp"
 #include "engine/cloud/cloud_builder.hpp"
 #include "engine/cloud/scalar.hpp"
 #include "engine/cloud/text_lines.hpp"
@@ -19,7 +20,7 @@ namespace {
 constexpr std::size_t kMostColumns = 64;    // those beyond are not looked at
 constexpr std::size_t kLeastLineBytes = 6;  // "0 0 0" and a line end
 
-std::string at_line(const LineReader& lines) { return "line " + std::to_string(lines.number()); }
+std::string at_line(const LineWindow& lines) { return "line " + std::to_string(lines.number()); }
 
 bool is_comment(std::string_view line) {
   std::string_view rest = line;
@@ -31,7 +32,7 @@ bool is_comment(std::string_view line) {
 // "1,5 2,5" would silently become four numbers where two with a decimal comma are meant.
 class Splitter {
  public:
-  Splitter(const Input& input, const LineReader& lines) : input_(input), lines_(lines) {}
+  Splitter(const Input& input, const LineWindow& lines) : input_(input), lines_(lines) {}
 
   void split(std::string_view line, std::vector<std::string_view>& words) const {
     words.clear();
@@ -74,7 +75,7 @@ class Splitter {
   }
 
   const Input& input_;
-  const LineReader& lines_;
+  const LineWindow& lines_;
 };
 
 // What stands in columns `first`, first + 1, first + 2.
@@ -106,7 +107,7 @@ Layout find_layout(const Input& input) {
   Layout layout;
   std::array<Evidence, 2> evidence;
   std::array<std::size_t, 2> first{3, 6};
-  LineReader lines(input.text());
+  LineWindow lines(input);
   std::vector<std::string_view> words;
   std::string_view line;
   for (std::size_t seen = 0; seen < kLooked && lines.next(line);) {
@@ -138,13 +139,16 @@ Layout find_layout(const Input& input) {
 
 class TextCloudReader {
  public:
-  TextCloudReader(const Input& input, const ReadOptions& options)
+  TextCloudReader(const Input& input, const ReadOptions& options, const CloudSink& sink)
       : input_(input),
         options_(options),
-        lines_(input.text()),
-        builder_(metres_per(options.units)) {}
+        sink_(sink),
+        lines_(input),
+        builder_(metres_per(options.units)) {
+    builder_.hand_to(sink_, {});
+  }
 
-  PointCloud read() {
+  void read() {
     std::vector<std::string_view> words;
     std::string_view line;
     const Splitter splitter(input_, lines_);
@@ -166,7 +170,7 @@ class TextCloudReader {
                  std::to_string(builder_.size()) + " (truncated file?)");
     }
     if (builder_.size() == 0) refuse(input_, "text without any points");
-    return builder_.finish({});
+    sink_.take(builder_.finish({}));
   }
 
  private:
@@ -174,7 +178,7 @@ class TextCloudReader {
   bool start_block(std::string_view word) {
     const std::optional<std::uint64_t> count = parse_count(word);
     if (!count || builder_.size() < due_ || (!promised_ && builder_.size() > 0)) return false;
-    const std::uint64_t left = input_.bytes.size() - lines_.at() + 1;
+    const std::uint64_t left = input_.size() - lines_.at() + 1;
     const std::uint64_t room =
         options_.max_points - std::min<std::uint64_t>(options_.max_points, builder_.size());
     check_count(input_, *count, kLeastLineBytes, left, room, "points");
@@ -230,7 +234,8 @@ class TextCloudReader {
 
   const Input& input_;
   const ReadOptions& options_;
-  LineReader lines_;
+  const CloudSink& sink_;
+  LineWindow lines_;
   CloudBuilder builder_;
   Layout layout_;
   bool started_ = false;
@@ -240,8 +245,8 @@ class TextCloudReader {
 
 }  // namespace
 
-PointCloud parse_text_cloud(const Input& input, const ReadOptions& options) {
-  return TextCloudReader(input, options).read();
+void parse_text_cloud(const Input& input, const ReadOptions& options, const CloudSink& sink) {
+  TextCloudReader(input, options, sink).read();
 }
 
 }  // namespace landmarkdb

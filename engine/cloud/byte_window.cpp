@@ -1,0 +1,71 @@
+#include "engine/cloud/byte_window.hpp"
+
+#include <algorithm>
+
+#include "engine/base/run_context.hpp"
+#include "engine/cloud/text_lines.hpp"
+
+namespace landmarkdb {
+namespace {
+
+constexpr std::size_t kUsualWord = 64;
+constexpr std::size_t kUsualLine = 256;
+
+std::string_view as_text(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+}  // namespace
+
+void ByteWindow::fill(std::size_t want) {
+  const std::span<const std::byte> kept = view_.subspan(used_);
+  const std::uint64_t start = at();
+  const auto size = static_cast<std::size_t>(
+      std::min<std::uint64_t>(std::max(want, input_.rest.window_bytes), end_ - start));
+  if (size > buffer_.size()) {
+    std::vector<std::byte> larger(size);
+    std::copy(kept.begin(), kept.end(), larger.begin());
+    buffer_.swap(larger);
+  } else {
+    std::copy(kept.begin(), kept.end(), buffer_.begin());  // forwards: it may overlap
+  }
+  if (input_.context != nullptr) input_.context->check("read");
+  const std::size_t got = input_.rest.file->read(
+      start + kept.size(), std::span(buffer_).first(size).subspan(kept.size()));
+  if (kept.size() + got < size) end_ = start + kept.size() + got;  // cut off since it was opened
+  view_ = std::span<const std::byte>(buffer_).first(kept.size() + got);
+  view_at_ = start;
+  used_ = 0;
+}
+
+std::string_view take_word(ByteWindow& window) {
+  for (std::size_t want = kUsualWord;;) {
+    const std::string_view all = as_text(window.ahead(want));
+    std::string_view rest = all;
+    const std::string_view word = take_word(rest);
+    if (rest.empty() && window.left() > all.size()) {  // it may go on behind what is in memory
+      want = 2 * all.size() + kUsualWord;
+      continue;
+    }
+    window.skip(all.size() - rest.size());
+    return word;
+  }
+}
+
+bool LineWindow::next(std::string_view& line) {
+  for (std::size_t want = kUsualLine;;) {
+    const std::string_view all = as_text(window_.ahead(want));
+    LineReader lines(all);
+    if (!lines.next(line)) return false;
+    // A line end that comes last may be the first half of "\r\n".
+    if (lines.at() == all.size() && window_.left() > all.size()) {
+      want = 2 * all.size() + kUsualLine;
+      continue;
+    }
+    window_.skip(lines.at());
+    ++number_;
+    return true;
+  }
+}
+
+}  // namespace landmarkdb
