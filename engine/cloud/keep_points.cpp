@@ -18,6 +18,7 @@ void keep_points(PointCloud& cloud, const std::vector<std::uint32_t>& kept) {
   keep(cloud.points, kept);
   keep(cloud.normals, kept);
   keep(cloud.colours, kept);
+  keep(cloud.weights, kept);
   keep(cloud.viewpoint_index, kept);
 }
 

@@ -10,44 +10,13 @@
 #include "engine/base/error.hpp"
 #include "engine/base/parallel.hpp"
 #include "engine/cloud/keep_points.hpp"
+#include "engine/cloud/reach.hpp"
 #include "engine/cloud/spatial_index.hpp"
 
 namespace landmarkdb {
 namespace {
 
 constexpr std::size_t kStep = 65'536;  // points between two looks at the stop token
-
-// Middle of the values, and half the width of what holds the middle half of them.
-struct Bulk {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double extent_m = 0.0;
-};
-
-double take_median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-Bulk measure_bulk(const std::vector<Eigen::Vector3f>& points) {
-  constexpr std::size_t kLooked = 10'000;  // a median needs no more
-  const std::size_t step = points.size() / kLooked + 1;
-  Bulk bulk;
-  Eigen::Vector3d half = Eigen::Vector3d::Zero();
-  std::vector<double> values;
-  for (int axis = 0; axis < 3; ++axis) {
-    values.clear();
-    for (std::size_t i = 0; i < points.size(); i += step) {
-      if (points[i].allFinite()) values.push_back(points[i][axis]);
-    }
-    if (values.empty()) return bulk;
-    bulk.centre[axis] = take_median(values);
-    for (double& value : values) value = std::abs(value - bulk.centre[axis]);
-    half[axis] = take_median(values);
-  }
-  bulk.extent_m = 2.0 * half.norm();
-  return bulk;
-}
 
 std::uint64_t hash(const Eigen::Vector3f& p) {
   std::uint64_t h = 0;
@@ -126,40 +95,6 @@ bool is_unit(const Eigen::Vector3f& normal) {
   return std::abs(normal.norm() - 1.0F) <= kTolerance;
 }
 
-// Makes all normals exactly unit. A few bad ones (surface reconstruction leaves some) take that of
-// the nearest point with a good one; with many, none can be trusted and all are dropped.
-void repair_normals(const std::vector<Eigen::Vector3f>& points,
-                    std::vector<Eigen::Vector3f>& normals,
-                    const RunContext& context) {
-  constexpr std::size_t kGoodPerBad = 9;
-  std::vector<std::uint32_t> good;
-  std::vector<std::uint32_t> bad;
-  for (std::uint32_t i = 0; i < normals.size(); ++i) {
-    if (is_unit(normals[i])) {
-      normals[i].normalize();
-      good.push_back(i);
-    } else {
-      bad.push_back(i);
-    }
-  }
-  if (bad.empty()) return;
-  if (good.size() < kGoodPerBad * bad.size()) {
-    normals.clear();
-    return;
-  }
-  std::vector<Eigen::Vector3f> good_points;
-  good_points.reserve(good.size());
-  for (const std::uint32_t i : good) good_points.push_back(points[i]);
-  const SpatialIndex index(good_points, context);
-  std::vector<Neighbour> nearest;
-  std::size_t repaired = 0;
-  for (const std::uint32_t i : bad) {
-    if (repaired++ % kStep == 0) context.check("sanitise");
-    index.nearest(points[i], 1, nearest);
-    normals[i] = normals[good[nearest[0].index]];
-  }
-}
-
 void check_lengths(const PointCloud& cloud) {
   auto fits = [&](std::size_t size) { return size == 0 || size == cloud.size(); };
   if (!fits(cloud.normals.size()) || !fits(cloud.colours.size()) ||
@@ -193,22 +128,49 @@ void check_viewpoints(PointCloud& cloud) {
 
 }  // namespace
 
+void repair_normals(PointCloud& cloud, const RunContext& context) {
+  const std::vector<Eigen::Vector3f>& points = cloud.points;
+  std::vector<Eigen::Vector3f>& normals = cloud.normals;
+  constexpr std::size_t kGoodPerBad = 9;
+  std::vector<std::uint32_t> good;
+  std::vector<std::uint32_t> bad;
+  for (std::uint32_t i = 0; i < normals.size(); ++i) {
+    if (is_unit(normals[i])) {
+      normals[i].normalize();
+      good.push_back(i);
+    } else {
+      bad.push_back(i);
+    }
+  }
+  if (bad.empty()) return;
+  if (good.size() < kGoodPerBad * bad.size()) {
+    normals.clear();
+    return;
+  }
+  std::vector<Eigen::Vector3f> good_points;
+  good_points.reserve(good.size());
+  for (const std::uint32_t i : good) good_points.push_back(points[i]);
+  const SpatialIndex index(good_points, context);
+  std::vector<Neighbour> nearest;
+  std::size_t repaired = 0;
+  for (const std::uint32_t i : bad) {
+    if (repaired++ % kStep == 0) context.check("sanitise");
+    index.nearest(points[i], 1, nearest);
+    normals[i] = normals[good[nearest[0].index]];
+  }
+}
+
 CloudCounts sanitise(PointCloud& cloud, const RunContext& context) {
-  // Of a room 30 km: a scan reaches less far, and the grids of voxels a little further.
-  constexpr double kFarExtents = 3e3;
-  constexpr double kFarAtLeast_m = 100.0;
   check_lengths(cloud);
   CloudCounts counts;
   counts.points = cloud.size();
-  const Bulk bulk = measure_bulk(cloud.points);
-  const double far_m = std::max(kFarAtLeast_m, kFarExtents * bulk.extent_m);
+  const Reach reach = measure_reach(cloud.points);
   std::vector<std::uint32_t> kept;
   kept.reserve(cloud.size());
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
     if (i % kStep == 0) context.check("sanitise");
     const Eigen::Vector3f& p = cloud.points[i];
-    const Eigen::Array3d apart = (p.cast<double>() - bulk.centre).array().abs();
-    if (apart.x() <= far_m && apart.y() <= far_m && apart.z() <= far_m) {  // no comparison with NaN
+    if (reach.holds(p)) {
       kept.push_back(i);
     } else {
       ++(p.allFinite() ? counts.out_of_range : counts.not_finite);
@@ -217,11 +179,46 @@ CloudCounts sanitise(PointCloud& cloud, const RunContext& context) {
   counts.duplicates = drop_repeats(cloud.points, kept, context);
   counts.used = kept.size();
   keep_points(cloud, kept);
-  repair_normals(cloud.points, cloud.normals, context);
+  repair_normals(cloud, context);
   check_viewpoints(cloud);
   cloud.width = 0;
   cloud.height = 0;
   return counts;
+}
+
+CloudCounts BlockSanitiser::sanitise(PointCloud& block, const RunContext& context) {
+  check_lengths(block);
+  CloudCounts counts;
+  counts.points = block.size();
+  std::vector<std::uint32_t> kept;
+  kept.reserve(block.size());
+  for (std::uint32_t i = 0; i < block.size(); ++i) {
+    if (i % kStep == 0) context.check("sanitise");
+    if (block.points[i].allFinite()) kept.push_back(i);
+  }
+  counts.not_finite = block.size() - kept.size();
+  // First, as a scanner may write zeros for every beam that met nothing: they are no bulk.
+  counts.duplicates = drop_repeats(block.points, kept, context);
+  add_to_sample(block.points, kept);
+  const Reach reach = measure_reach(sample_);
+  counts.out_of_range =
+      std::erase_if(kept, [&](std::uint32_t i) { return !reach.holds(block.points[i]); });
+  counts.used = kept.size();
+  keep_points(block, kept);
+  for (Eigen::Vector3f& normal : block.normals) {
+    normal = is_unit(normal) ? Eigen::Vector3f(normal.normalized()) : Eigen::Vector3f::Zero();
+  }
+  check_viewpoints(block);
+  block.width = 0;
+  block.height = 0;
+  return counts;
+}
+
+void BlockSanitiser::add_to_sample(const std::vector<Eigen::Vector3f>& points,
+                                   const std::vector<std::uint32_t>& kept) {
+  constexpr std::size_t kOfABlock = 1000;  // some ten blocks have what a median needs
+  const std::size_t step = kept.size() / kOfABlock + 1;
+  for (std::size_t k = 0; k < kept.size(); k += step) sample_.push_back(points[kept[k]]);
 }
 
 }  // namespace landmarkdb

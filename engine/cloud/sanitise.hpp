@@ -1,5 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
 #include "engine/base/run_context.hpp"
 #include "engine/types/point_cloud.hpp"
 
@@ -14,5 +19,23 @@ namespace landmarkdb {
 // what was counted. Throws Error{kInvalidArgument} when the arrays differ in length, and what
 // `context.check` does; the cloud is then of no use.
 CloudCounts sanitise(PointCloud& cloud, const RunContext& context = {});
+
+// The same for the blocks of one scan, in their order, of which no two need be in memory together:
+// repeats are those within a block; what is too far away is judged by this block and those before,
+// each position once; normals that are not of unit length become zero, for repair_normals to mend
+// when all blocks are in one cloud. The blocks have one origin. Not thread-safe.
+class BlockSanitiser {
+ public:
+  CloudCounts sanitise(PointCloud& block, const RunContext& context = {});
+
+ private:
+  void add_to_sample(const std::vector<Eigen::Vector3f>& points,
+                     const std::vector<std::uint32_t>& kept);
+
+  std::vector<Eigen::Vector3f> sample_;  // of all blocks so far
+};
+
+// What sanitise does to the normals. Throws what `context.check` does.
+void repair_normals(PointCloud& cloud, const RunContext& context = {});
 
 }  // namespace landmarkdb

@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -71,17 +72,6 @@ class KeyLayout {
     }
     return key;
   }
-  Cell cell_of(std::uint64_t key) const {
-    Cell cell = low_;
-    for (int axis = 0, shift = 0; axis < 3; shift += bits_[at(axis++)]) {
-      const int bits = bits_[at(axis)];
-      if (bits == 0) continue;  // one cell only
-      const std::uint64_t number = key >> shift & (~std::uint64_t{0} >> (64 - bits));
-      cell[at(axis)] =
-          static_cast<std::int64_t>(static_cast<std::uint64_t>(low_[at(axis)]) + number);
-    }
-    return cell;
-  }
 
  private:
   static std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
@@ -90,34 +80,29 @@ class KeyLayout {
   std::array<int, 3> bits_;
 };
 
-// Makes cells of the items' runs of one key; `cell_of` turns a key into its cell.
-template <typename Item, typename IndexOf, typename KeyOf, typename CellOf>
-VoxelCells group_sorted(const std::vector<Item>& items,
-                        const IndexOf& index_of,
-                        const KeyOf& key_of,
-                        const CellOf& cell_of,
-                        const RunContext& context) {
-  VoxelCells result;
-  result.order.reserve(items.size());
+// Makes cells of the items' runs of one key.
+template <typename Item, typename IndexOf, typename KeyOf>
+VoxelRuns runs_of_sorted(const std::vector<Item>& items,
+                         const IndexOf& index_of,
+                         const KeyOf& key_of,
+                         const RunContext& context) {
+  VoxelRuns runs;
+  runs.order.reserve(items.size());
   for (std::uint32_t k = 0; k < items.size(); ++k) {
     if (k % kStep == 0) context.check("voxels");
-    result.order.push_back(index_of(items[k]));
-    if (k > 0 && key_of(items[k]) == key_of(items[k - 1])) {
-      result.cells.back().end = k + 1;
-    } else {
-      const Cell cell = cell_of(key_of(items[k]));
-      result.cells.push_back({cell[0], cell[1], cell[2], k, k + 1});
-    }
+    runs.order.push_back(index_of(items[k]));
+    if (k == 0 || key_of(items[k]) != key_of(items[k - 1])) runs.first.push_back(k);
   }
-  return result;
+  runs.first.push_back(static_cast<std::uint32_t>(items.size()));
+  return runs;
 }
 
 // Each word is a cell's key above a point's index.
-VoxelCells group_by_word(std::span<const Eigen::Vector3f> points,
-                         const std::vector<std::uint32_t>& finite,
-                         double cells_per_m,
-                         const KeyLayout& layout,
-                         const RunContext& context) {
+VoxelRuns group_by_word(std::span<const Eigen::Vector3f> points,
+                        std::vector<std::uint32_t> finite,
+                        double cells_per_m,
+                        const KeyLayout& layout,
+                        const RunContext& context) {
   const int shift = index_bits(points.size());
   std::vector<std::uint64_t> words(finite.size());
   parallel_chunks(finite.size(), context.threads, [&](std::size_t begin, std::size_t end) {
@@ -126,22 +111,43 @@ VoxelCells group_by_word(std::span<const Eigen::Vector3f> points,
       words[k] = (key << shift) | finite[k];
     }
   });
+  finite = {};  // what follows takes the most memory
   sort_words(words, shift, context);
-  return group_sorted(
+  return runs_of_sorted(
       words,
       [&](std::uint64_t word) {
         return static_cast<std::uint32_t>(word & ((std::uint64_t{1} << shift) - 1));
       },
       [&](std::uint64_t word) { return word >> shift; },
-      [&](std::uint64_t key) { return layout.cell_of(key); },
       context);
 }
 
 // For extents whose cell numbers and a point's index do not fit 64 bits together.
-VoxelCells group_by_compare(std::span<const Eigen::Vector3f> points,
-                            const std::vector<std::uint32_t>& finite,
-                            double cells_per_m,
-                            const RunContext& context) {
+VoxelRuns group_by_key(std::span<const Eigen::Vector3f> points,
+                       std::vector<std::uint32_t> finite,
+                       double cells_per_m,
+                       const KeyLayout& layout,
+                       const RunContext& context) {
+  std::vector<Keyed> items(finite.size());
+  parallel_chunks(finite.size(), context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      items[k] = {layout.key_of(cell_of(points[finite[k]], cells_per_m)), finite[k]};
+    }
+  });
+  finite = {};
+  sort_by_key(items, context);
+  return runs_of_sorted(
+      items,
+      [](const Keyed& item) { return item.index; },
+      [](const Keyed& item) { return item.key; },
+      context);
+}
+
+// For extents whose cell numbers alone do not.
+VoxelRuns group_by_compare(std::span<const Eigen::Vector3f> points,
+                           const std::vector<std::uint32_t>& finite,
+                           double cells_per_m,
+                           const RunContext& context) {
   struct Item {
     Cell key;  // z first
     std::uint32_t index;
@@ -154,13 +160,10 @@ VoxelCells group_by_compare(std::span<const Eigen::Vector3f> points,
     items.push_back({{cell[2], cell[1], cell[0]}, i});
   }
   std::sort(items.begin(), items.end());
-  return group_sorted(
+  return runs_of_sorted(
       items,
       [](const Item& item) { return item.index; },
       [](const Item& item) { return item.key; },
-      [](const Cell& key) {
-        return Cell{key[2], key[1], key[0]};
-      },
       context);
 }
 
@@ -168,7 +171,7 @@ auto rank(const VoxelCell& cell) { return std::tie(cell.z, cell.y, cell.x); }
 
 }  // namespace
 
-VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
+VoxelRuns find_voxel_runs(std::span<const Eigen::Vector3f> points,
                           double edge_m,
                           const RunContext& context) {
   if (!(edge_m > 0.0) || !std::isfinite(edge_m) || !std::isfinite(1.0 / edge_m)) {
@@ -193,9 +196,27 @@ VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
   finite.resize(count);
   // A point further out is in no lower a cell.
   const Bounds bounds{cell_of(box.min(), cells_per_m), cell_of(box.max(), cells_per_m)};
-  const bool fits = bounds.bits() + index_bits(points.size()) <= 64;
-  return fits ? group_by_word(points, finite, cells_per_m, KeyLayout(bounds), context)
-              : group_by_compare(points, finite, cells_per_m, context);
+  if (bounds.bits() > 64) return group_by_compare(points, finite, cells_per_m, context);
+  const bool fits_with_index = bounds.bits() + index_bits(points.size()) <= 64;
+  return (fits_with_index ? group_by_word : group_by_key)(
+      points, std::move(finite), cells_per_m, KeyLayout(bounds), context);
+}
+
+VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
+                          double edge_m,
+                          const RunContext& context) {
+  VoxelRuns runs = find_voxel_runs(points, edge_m, context);
+  const double cells_per_m = 1.0 / edge_m;
+  VoxelCells result;
+  result.cells.resize(runs.cells());
+  parallel_chunks(runs.cells(), context.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const Cell cell = cell_of(points[runs.points_of(c)[0]], cells_per_m);
+      result.cells[c] = {cell[0], cell[1], cell[2], runs.first[c], runs.first[c + 1]};
+    }
+  });
+  result.order = std::move(runs.order);
+  return result;
 }
 
 std::span<const VoxelCell> find_row(const VoxelCells& cells,

@@ -23,9 +23,26 @@ struct VoxelCells {
   std::vector<VoxelCell> cells;
 };
 
+// The same without the cells' numbers, in an eighth of the memory: cell c holds the points
+// order[first[c]] .. order[first[c + 1] - 1].
+struct VoxelRuns {
+  std::vector<std::uint32_t> order;
+  std::vector<std::uint32_t> first;  // one more than cells, unless there are none
+
+  std::size_t cells() const { return first.empty() ? 0 : first.size() - 1; }
+  std::span<const std::uint32_t> points_of(std::size_t cell) const {
+    return std::span(order).subspan(first[cell], first[cell + 1] - first[cell]);
+  }
+};
+
 // Throws Error{kInvalidArgument} for an edge that is not positive and finite, or so small that the
 // cell numbers of these points would not fit 64 bits. Cost: a radix sort of 64-bit keys, unless the
 // extent needs wider ones. Throws what `context.check` does.
+VoxelRuns find_voxel_runs(std::span<const Eigen::Vector3f> points,
+                          double edge_m,
+                          const RunContext& context = {});
+
+// find_voxel_runs, and the number of each cell.
 VoxelCells group_by_voxel(std::span<const Eigen::Vector3f> points,
                           double edge_m,
                           const RunContext& context = {});

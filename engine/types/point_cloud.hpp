@@ -18,6 +18,8 @@ struct PointCloud {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;              // unit length
   std::vector<std::array<std::uint8_t, 3>> colours;  // red, green, blue
+  // How many measured points each is the mean of, where a cloud was condensed. Empty: one each.
+  std::vector<std::uint32_t> weights;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
 
   // Where the points were seen from (same frame as `points`, so without `origin`), and which of

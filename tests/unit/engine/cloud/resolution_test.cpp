@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.hpp"
+#include "engine/cloud/voxel_grid.hpp"
 #include "tests/unit/engine/cloud/shapes.hpp"
 
 namespace landmarkdb {
@@ -48,6 +49,41 @@ TEST(MeasureScale, IsNotMovedByAFewStrayPoints) {
   const CloudScale after = measure_scale(cloud);
   EXPECT_NEAR(after.extent_m, before.extent_m, 0.05);
   EXPECT_NEAR(after.spacing_m, before.spacing_m, 0.005);
+}
+
+TEST(MeasureScale, CountsPointsByTheirWeights) {
+  // Nine tenths of the points on one short wall: its ends are the extent, condensed or not.
+  PointCloud cloud = testing::make_room({6, 5, 3}, 0.1F);
+  Random random(1);
+  for (int i = 0; i < 2'000'000; ++i) {
+    cloud.points.emplace_back(
+        0.0F, static_cast<float>(random.uniform(0, 1)), static_cast<float>(random.uniform(0, 1)));
+  }
+  const CloudScale whole = measure_scale(cloud);
+  EXPECT_LT(whole.extent_m, 2.0);
+  condense(cloud, 0.01);
+  const CloudScale condensed = measure_scale(cloud);
+  EXPECT_NEAR(condensed.extent_m, whole.extent_m, 0.03);
+  EXPECT_NEAR(measure_extent(cloud), condensed.extent_m, 1e-12);
+  cloud.weights.clear();
+  EXPECT_GT(measure_scale(cloud).extent_m, 4.0);
+}
+
+TEST(MeasureScale, FindsTheSpacingOfACondensedCloudWhereItIsLargerThanItsCells) {
+  PointCloud sparse = testing::make_room({6, 5, 3}, 0.04F);
+  const CloudScale whole = measure_scale(sparse);
+  condense(sparse, 0.01);
+  EXPECT_NEAR(measure_scale(sparse).spacing_m, whole.spacing_m, 0.002);
+
+  // Twenty points at each place: the sixteenth neighbour of each is at its own.
+  PointCloud dense = testing::make_room({6, 5, 3}, 0.04F);
+  const PointCloud once = dense;
+  for (int copy = 0; copy < 19; ++copy) {
+    dense.points.insert(dense.points.end(), once.points.begin(), once.points.end());
+  }
+  condense(dense, 0.01);
+  EXPECT_LT(dense.size(), once.size() + 1);
+  EXPECT_LT(measure_scale(dense).spacing_m, 0.01);
 }
 
 TEST(MeasureScale, NeedsFourPoints) {

@@ -110,5 +110,56 @@ TEST(Sanitise, RefusesArraysOfDifferentLengths) {
   EXPECT_THROW(sanitise(cloud), Error);
 }
 
+TEST(BlockSanitiser, CountsEachPointOnceOverAllBlocks) {
+  BlockSanitiser sanitiser;
+  CloudCounts counts;
+  for (int b = 0; b < 3; ++b) {
+    PointCloud block = line_of_points(20);
+    for (Eigen::Vector3f& p : block.points) p.y() = static_cast<float>(b);
+    block.points[2].y() = kNan;
+    block.points[6] = block.points[5];
+    block.points[7] = {1e7F, 0, 0};
+    block.width = 5;
+    block.height = 4;
+    const CloudCounts part = sanitiser.sanitise(block);
+    EXPECT_EQ(part.points, 20U);
+    EXPECT_EQ(part.not_finite, 1U);
+    EXPECT_EQ(part.duplicates, 1U);
+    EXPECT_EQ(part.out_of_range, 1U) << "of block " << b;
+    EXPECT_EQ(part.used, 17U);
+    EXPECT_EQ(block.size(), 17U);
+    EXPECT_EQ(block.width, 0U);
+  }
+}
+
+TEST(BlockSanitiser, TakesZerosOfBeamsThatMetNothingForNoBulk) {
+  PointCloud block;
+  block.points.assign(1000, {0, 0, 0});
+  for (int i = 1; i <= 200; ++i) block.points.emplace_back(0.0F, 5.0F * static_cast<float>(i), 1);
+  const CloudCounts counts = BlockSanitiser().sanitise(block);
+  EXPECT_EQ(counts.duplicates, 999U);
+  EXPECT_EQ(counts.out_of_range, 0U);
+}
+
+TEST(BlockSanitiser, JudgesASmallLastBlockByThoseBefore) {
+  BlockSanitiser sanitiser;
+  PointCloud first = line_of_points(500);
+  sanitiser.sanitise(first);
+  PointCloud last;
+  last.points = {{3e6F, 0, 0}, {3e6F, 1, 0}, {2, 0, 0}};
+  EXPECT_EQ(sanitiser.sanitise(last).out_of_range, 2U);
+  ASSERT_EQ(last.size(), 1U);
+}
+
+TEST(BlockSanitiser, LeavesBadNormalsForTheEnd) {
+  PointCloud block = line_of_points(40);
+  block.normals.assign(40, {0, 0, 1.04F});
+  for (std::size_t i = 0; i < 10; ++i) block.normals[i] = {kNan, 0, 0};
+  BlockSanitiser().sanitise(block);
+  ASSERT_EQ(block.normals.size(), 40U);
+  EXPECT_TRUE(block.normals[9].isZero());
+  EXPECT_EQ(block.normals[10], Eigen::Vector3f(0, 0, 1));
+}
+
 }  // namespace
 }  // namespace landmarkdb
