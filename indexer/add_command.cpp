@@ -98,7 +98,7 @@ std::string metres_text(double metres) {
 int print_estimate(const AddRequest& request, const Program& program) {
   LongJob job(program);
   const IndexEstimate estimate =
-      estimate_index(read_scans(request, job.context()), request.options, job.context());
+      estimate_index(gather_scans(request, job.context()), request.options, job.context());
   job.finish_progress();
   const ordered_json object = {{"scene", request.name},
                                {"estimate", true},

@@ -41,23 +41,26 @@ RunContext one_of_many(const RunContext& context, std::uint64_t before, std::uin
 
 }  // namespace
 
-std::vector<Scan> read_scans(const AddRequest& request, const RunContext& context) {
+GatheredScans gather_scans(const AddRequest& request, const RunContext& context) {
   const ReadOptions read_options{.units = request.units};
-  std::vector<Scan> scans;
-  scans.reserve(request.clouds.size());
   std::uint64_t total = 0;
   for (const std::string& cloud : request.clouds) total += bytes_of(cloud);
   std::uint64_t before = 0;
+  ScanGatherer gatherer(request.options, context);
   for (std::size_t i = 0; i < request.clouds.size(); ++i) {
-    Scan scan;
-    scan.cloud = read_cloud(request.clouds[i], read_options, one_of_many(context, before, total));
-    before += bytes_of(request.clouds[i]);
-    if (!request.poses.empty()) scan.T_scene_cloud = request.poses[i];
-    if (!request.viewpoints.empty()) set_viewpoint(request.viewpoints[i], scan.cloud);
-    scan.source = std::filesystem::path(request.clouds[i]).filename().string();
-    scans.push_back(std::move(scan));
+    const std::string& path = request.clouds[i];
+    gatherer.begin_scan(std::filesystem::path(path).filename().string(),
+                        request.poses.empty() ? Eigen::Isometry3d::Identity() : request.poses[i]);
+    const CloudSink sink{gatherer.block_points(), [&](PointCloud block) {
+                           if (!request.viewpoints.empty()) {
+                             set_viewpoint(request.viewpoints[i], block);
+                           }
+                           gatherer.add(std::move(block));
+                         }};
+    read_cloud_in_blocks(path, read_options, one_of_many(context, before, total), sink);
+    before += bytes_of(path);
   }
-  return scans;
+  return gatherer.finish();
 }
 
 AddResult add_scene(const AddRequest& request, const std::string& db, const RunContext& context) {
@@ -65,7 +68,7 @@ AddResult add_scene(const AddRequest& request, const std::string& db, const RunC
   require_writable_database(db);
   AddResult result;
   result.record =
-      describe_scene(request.name, read_scans(request, context), request.options, context);
+      describe_scene(request.name, gather_scans(request, context), request.options, context);
   result.stored = change_or_create(db, [&](Store& store) {
     return store.insert(result.record, context, {make_scene_index, scene_index_format()});
   });

@@ -30,9 +30,10 @@ struct AddResult {
   SceneRecord record;  // as stored
 };
 
-// Reads the clouds, turned to metres, each with its pose and viewpoint. Reports the stage "read" in
-// bytes of all files together.
-std::vector<Scan> read_scans(const AddRequest& request, const RunContext& context);
+// Reads the clouds, turned to metres, each with its pose and viewpoint, into one of the scene; of
+// many points no more are in memory than ScanGatherer holds. Reports the stages "read" in bytes of
+// all files together, and "sanitise".
+GatheredScans gather_scans(const AddRequest& request, const RunContext& context);
 
 // Reads, describes and stores. The database is opened for writing only at the end, and made where
 // there is none; whatever goes wrong before leaves it as it was.

@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
-#include "engine/cloud/merge_clouds.hpp"
 #include "engine/cloud/prepare_cloud.hpp"
 #include "engine/cloud/resolution.hpp"
-#include "engine/cloud/sanitise.hpp"
 #include "engine/features/describe_shot.hpp"
 #include "engine/features/detect_keypoints.hpp"
 #include "engine/retrieval/entry.hpp"
@@ -20,48 +18,15 @@ namespace landmarkdb {
 
 namespace {
 
-struct MergedScans {
-  PointCloud cloud;
-  CloudCounts counts;
-  std::vector<std::string> sources;
-};
-
-void add_counts(CloudCounts& sum, const CloudCounts& part) {
-  sum.points += part.points;
-  sum.not_finite += part.not_finite;
-  sum.duplicates += part.duplicates;
-  sum.out_of_range += part.out_of_range;
-  sum.used += part.used;
-}
-
-std::string describe_counts(const CloudCounts& counts) {
-  std::ostringstream text;
-  text << counts.points << " points, " << counts.not_finite << " not finite, " << counts.duplicates
-       << " repeated, " << counts.out_of_range << " out of range, " << counts.used << " left";
-  return text.str();
-}
-
-MergedScans merge_scans(std::vector<Scan> scans, const RunContext& context) {
-  MergedScans merged;
-  std::vector<PointCloud> clouds;
-  std::vector<Eigen::Isometry3d> T_scene_cloud;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    context.report("sanitise", i, scans.size());
-    add_counts(merged.counts, sanitise(scans[i].cloud, context));
-    merged.sources.push_back(std::move(scans[i].source));
-    if (scans[i].cloud.empty()) continue;
-    clouds.push_back(std::move(scans[i].cloud));
-    T_scene_cloud.push_back(scans[i].T_scene_cloud);
+GatheredScans gather(std::vector<Scan> scans,
+                     const IndexOptions& options,
+                     const RunContext& context) {
+  ScanGatherer gatherer(options, context);
+  for (Scan& scan : scans) {
+    gatherer.begin_scan(std::move(scan.source), scan.T_scene_cloud);
+    gatherer.add(std::exchange(scan.cloud, {}));
   }
-  constexpr std::size_t kFewest = 4;  // a similarity needs four pairs
-  if (merged.counts.used < kFewest) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "nothing to describe: " + describe_counts(merged.counts) + ", want at least 4");
-  }
-  const bool as_it_is =
-      clouds.size() == 1 && T_scene_cloud[0].isApprox(Eigen::Isometry3d::Identity());
-  merged.cloud = as_it_is ? std::move(clouds[0]) : merge_clouds(clouds, T_scene_cloud, context);
-  return merged;
+  return gatherer.finish();
 }
 
 FeatureOptions feature_options_of(const CloudScale& scale, const IndexOptions& options) {
@@ -76,6 +41,18 @@ FeatureOptions feature_options_of(const CloudScale& scale, const IndexOptions& o
   }
   return derive_feature_options(
       scale, options.kind, options.keypoints, options.voxel_m, options.radius_m);
+}
+
+// The cells are those of the working resolution as it looked when they were needed. A step of its
+// ladder less would be as good; scans whose later part is much smaller than the first are rare.
+void check_cells(double cell_m, double voxel_m) {
+  constexpr double kFewestAcross = 1.4;  // in a voxel
+  if (kFewestAcross * cell_m <= voxel_m) return;
+  std::ostringstream text;
+  text << "the scans have more points than are held in memory and were condensed to cells of "
+       << cell_m << " m, too coarse for their working resolution of " << voxel_m
+       << " m: give it with the scans (--voxel), or thin them before";
+  throw Error(ErrorCode::kResourceExhausted, text.str(), "voxel");
 }
 
 PrepareOptions prepare_options(const FeatureOptions& features) {
@@ -107,26 +84,26 @@ std::optional<Eigen::Vector3d> unit_up(const std::optional<Eigen::Vector3d>& up)
 }  // namespace
 
 SceneRecord describe_scene(std::string name,
-                           std::vector<Scan> scans,
+                           GatheredScans scans,
                            const IndexOptions& options,
                            const RunContext& context) {
   SceneRecord record;
   record.name = std::move(name);
   record.kind = options.kind;
   record.up = unit_up(options.up);
-  MergedScans merged = merge_scans(std::move(scans), context);
-  record.sources = std::move(merged.sources);
+  record.sources = std::move(scans.sources);
 
-  const CloudScale scale = measure_scale(merged.cloud, context);
+  const CloudScale scale = measure_scale(scans.cloud, context);
   if (units_look_wrong(scale, options.kind)) record.warnings.emplace_back("units_suspect");
   record.options = feature_options_of(scale, options);
+  check_cells(scans.cell_m, record.options.voxel_m);
   grid_size(
-      merged.cloud.points, record.options.voxel_m, context);  // refuses what no server could hold
+      scans.cloud.points, record.options.voxel_m, context);  // refuses what no server could hold
 
   context.report("prepare", 0, 1);
   record.prepared =
-      prepare_cloud(merged.cloud, merged.counts, prepare_options(record.options), context);
-  merged = {};
+      prepare_cloud(scans.cloud, scans.counts, prepare_options(record.options), context);
+  scans = {};
   if (!record.prepared.normals_from_viewpoint) record.warnings.emplace_back("normals_unoriented");
 
   const Keypoints keypoints = keypoints_of(record.prepared, record.options, options.kind, context);
@@ -144,17 +121,31 @@ SceneRecord describe_scene(std::string name,
   return record;
 }
 
+SceneRecord describe_scene(std::string name,
+                           std::vector<Scan> scans,
+                           const IndexOptions& options,
+                           const RunContext& context) {
+  return describe_scene(
+      std::move(name), gather(std::move(scans), options, context), options, context);
+}
+
 IndexEstimate estimate_index(std::vector<Scan> scans,
                              const IndexOptions& options,
                              const RunContext& context) {
+  return estimate_index(gather(std::move(scans), options, context), options, context);
+}
+
+IndexEstimate estimate_index(GatheredScans scans,
+                             const IndexOptions& options,
+                             const RunContext& context) {
   const auto start = std::chrono::steady_clock::now();
-  const MergedScans merged = merge_scans(std::move(scans), context);
   IndexEstimate estimate;
-  estimate.points = merged.counts.points;
-  estimate.options = feature_options_of(measure_scale(merged.cloud, context), options);
-  const GridSize grid = grid_size(merged.cloud.points, estimate.options.voxel_m, context);
+  estimate.points = scans.counts.points;
+  estimate.options = feature_options_of(measure_scale(scans.cloud, context), options);
+  check_cells(scans.cell_m, estimate.options.voxel_m);
+  const GridSize grid = grid_size(scans.cloud.points, estimate.options.voxel_m, context);
   const PreparedCloud prepared =
-      prepare_cloud(merged.cloud, merged.counts, prepare_options(estimate.options), context);
+      prepare_cloud(scans.cloud, scans.counts, prepare_options(estimate.options), context);
   estimate.points_used = prepared.size();
   const Keypoints keypoints = keypoints_of(prepared, estimate.options, options.kind, context);
   estimate.keypoints = keypoints.size();
@@ -166,7 +157,11 @@ IndexEstimate estimate_index(std::vector<Scan> scans,
   constexpr std::uint64_t kKeypointBytes = 24 + 16 + kShotLength * sizeof(float);
   estimate.database_bytes =
       kPointBytes * estimate.points_used + kKeypointBytes * estimate.keypoints;
-  estimate.memory_bytes = estimate.points * 64 + 4 * estimate.database_bytes;
+  // Of each point that is held: 12 to 33 bytes, and as many again where scans are merged or sorted.
+  constexpr std::uint64_t kHeldBytes = 64;
+  const std::uint64_t held =
+      scans.cell_m > 0.0 ? std::max(ScanGatherer::kMostHeld, scans.cloud.size()) : estimate.points;
+  estimate.memory_bytes = kHeldBytes * held + 4 * estimate.database_bytes;
   estimate.served_bytes = 2 * estimate.database_bytes + grid.bytes();
   // A sample of the descriptors tells what the rest will take.
   constexpr std::size_t kSample = 200;

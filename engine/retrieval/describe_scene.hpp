@@ -1,25 +1,17 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "engine/base/run_context.hpp"
+#include "engine/retrieval/index_options.hpp"
+#include "engine/retrieval/scan_gatherer.hpp"
 #include "engine/types/point_cloud.hpp"
 #include "engine/types/scene_record.hpp"
 
 namespace landmarkdb {
-
-// How an entry is to be described; what is left out is derived from the data.
-struct IndexOptions {
-  EntryKind kind = EntryKind::kPlace;
-  std::optional<double> voxel_m;
-  std::optional<double> radius_m;  // SHOT support
-  KeypointMethod keypoints = KeypointMethod::kStructure;
-  std::optional<Eigen::Vector3d> up;  // scene frame, any length > 0
-};
 
 // One scan of the place, as read from a file (metres), with its pose in the scene frame.
 struct Scan {
@@ -37,17 +29,28 @@ struct IndexEstimate {
   double seconds = 0.0;
 };
 
-// Turns scans into a scene record: sanitise, merge, derive the working resolution, prepare, detect
-// keypoints, describe. `scans` is consumed. Reports the stages "sanitise", "prepare", "keypoints",
-// "describe". Throws Error{kInvalidArgument} when nothing is left to describe (empty, too few
-// points, all on one plane or line) with what was counted, or for a voxel so small that no server
-// could hold the scene's grid, with the figures; Error{kCancelled} on a stop request.
+// Turns scans into a scene record: derive the working resolution, prepare, detect keypoints,
+// describe. `scans` is consumed; the options are those they were gathered for. Reports the stages
+// "prepare", "keypoints", "describe". Throws Error{kInvalidArgument} when nothing is left to
+// describe (too few points, all on one plane or line) with what was counted, or for a voxel so
+// small that no server could hold the scene's grid, with the figures; Error{kResourceExhausted}
+// when the cells that the scans were condensed to turn out too coarse for the working resolution;
+// Error{kCancelled} on a stop request.
+SceneRecord describe_scene(std::string name,
+                           GatheredScans scans,
+                           const IndexOptions& options,
+                           const RunContext& context);
+
+// The same of scans that are in memory, gathered first; reports the stage "sanitise" too.
 SceneRecord describe_scene(std::string name,
                            std::vector<Scan> scans,
                            const IndexOptions& options,
                            const RunContext& context);
 
 // The same as far as the working resolution, then an extrapolation; cheap. Refuses the same.
+IndexEstimate estimate_index(GatheredScans scans,
+                             const IndexOptions& options,
+                             const RunContext& context);
 IndexEstimate estimate_index(std::vector<Scan> scans,
                              const IndexOptions& options,
                              const RunContext& context);

@@ -133,7 +133,7 @@ TEST(DescribeScene, RefusesWhatHoldsTooFewPointsAndSaysHowMany) {
   PointCloud not_finite;
   not_finite.points.assign(50, Eigen::Vector3f(kNan, 2, 3));
   EXPECT_THAT(refusal(not_finite), HasSubstr("50 not finite"));
-  EXPECT_THROW(describe_scene("no scans", {}, {}, {}), Error);
+  EXPECT_THROW(describe_scene("no scans", std::vector<Scan>{}, {}, {}), Error);
 }
 
 TEST(DescribeScene, RefusesAPlaneALineAndASpeck) {
