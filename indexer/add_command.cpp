@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/Option.hpp>
@@ -97,8 +98,11 @@ std::string metres_text(double metres) {
 
 int print_estimate(const AddRequest& request, const Program& program) {
   LongJob job(program);
-  const IndexEstimate estimate =
-      estimate_index(gather_scans(request, job.context()), request.options, job.context());
+  const auto start = std::chrono::steady_clock::now();
+  GatheredScans scans = gather_scans(request, job.context());
+  const std::chrono::duration<double> gathering = std::chrono::steady_clock::now() - start;
+  IndexEstimate estimate = estimate_index(std::move(scans), request.options, job.context());
+  estimate.seconds += gathering.count();
   job.finish_progress();
   const ordered_json object = {{"scene", request.name},
                                {"estimate", true},
