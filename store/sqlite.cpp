@@ -45,6 +45,12 @@ std::string immutable_uri(const std::string& path) {
   return uri + "?immutable=1";
 }
 
+// Nobody asks how much memory SQLite takes, and counting it has every thread wait for one lock: a
+// thousand scenes are read in three quarters of the time without.
+void count_no_memory() {
+  [[maybe_unused]] static const int code = sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
+}
+
 }  // namespace
 
 Database::Database(const std::string& path, OpenMode mode, std::chrono::milliseconds busy_timeout)
@@ -53,6 +59,7 @@ Database::Database(const std::string& path, OpenMode mode, std::chrono::millisec
   const std::string plain =
       !path.empty() && path.front() == ':' && path != ":memory:" ? "./" + path : path;
   const std::string name = mode == OpenMode::kImmutable ? immutable_uri(plain) : plain;
+  count_no_memory();
   const int code = sqlite3_open_v2(name.c_str(), &handle_, open_flags(mode), nullptr);
   try {
     if (code != SQLITE_OK) throw_error(handle_, code, path_);

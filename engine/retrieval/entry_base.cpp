@@ -15,20 +15,18 @@ namespace landmarkdb {
 
 namespace {
 
-// Side by side, and a few at a time, so that progress is told between them. `make(i)` fills in
+// Side by side, and some at a time, so that progress is told between them. `make(i)` fills in
 // which[i].
 template <typename Make>
 void for_each_entry(std::span<const std::size_t> which,
                     const RunContext& context,
                     const Make& make) {
-  constexpr std::size_t kAtATime = 16;  // for each thread: a large place holds up few others
+  constexpr std::size_t kAtATime = 64;  // for each thread
   const std::size_t step = kAtATime * static_cast<std::size_t>(std::max(context.threads, 1));
   for (std::size_t first = 0; first < which.size(); first += step) {
     context.report("index", first, which.size());
     const std::size_t count = std::min(step, which.size() - first);
-    parallel_chunks(count, context.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) make(which[first + i]);
-    });
+    parallel_each(count, context.threads, [&](std::size_t i) { make(which[first + i]); });
   }
 }
 

@@ -75,12 +75,10 @@ std::unique_ptr<CodedIndex> make_index_of_codes(const Entries& entries,
   for (std::size_t first = 0; first < chosen.size(); first += kAtATime) {
     context.report("index", first, chosen.size());
     std::vector<DescriptorCodes> codes(std::min(kAtATime, chosen.size() - first));
-    parallel_chunks(codes.size(), context.threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::size_t entry = chosen[first + i];
-        std::optional<DescriptorCodes> given = at_hand ? at_hand(entry) : std::nullopt;
-        codes[i] = given ? *std::move(given) : codes_of(entries[entry], scanned, alone);
-      }
+    parallel_each(codes.size(), context.threads, [&](std::size_t i) {
+      const std::size_t entry = chosen[first + i];
+      std::optional<DescriptorCodes> given = at_hand ? at_hand(entry) : std::nullopt;
+      codes[i] = given ? *std::move(given) : codes_of(entries[entry], scanned, alone);
     });
     for (const DescriptorCodes& one : codes) maker.add({{}, &one});
   }
