@@ -1,6 +1,8 @@
 #include "engine/cloud/byte_window.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "engine/base/run_context.hpp"
 #include "engine/cloud/text_lines.hpp"
@@ -22,18 +24,29 @@ void ByteWindow::fill(std::size_t want) {
   const std::uint64_t start = at();
   const auto size = static_cast<std::size_t>(
       std::min<std::uint64_t>(std::max(want, input_.rest.window_bytes), end_ - start));
-  if (size > buffer_.size()) {
-    std::vector<std::byte> larger(size);
-    std::copy(kept.begin(), kept.end(), larger.begin());
-    buffer_.swap(larger);
+  if (size > buffer_.size) {
+    FileBytes larger{std::make_unique_for_overwrite<std::byte[]>(size), size};
+    std::copy(kept.begin(), kept.end(), larger.data.get());
+    buffer_ = std::move(larger);
   } else {
-    std::copy(kept.begin(), kept.end(), buffer_.begin());  // forwards: it may overlap
+    std::copy(kept.begin(), kept.end(), buffer_.data.get());  // forwards: it may overlap
   }
   if (input_.context != nullptr) input_.context->check("read");
-  const std::size_t got = input_.rest.file->read(
-      start + kept.size(), std::span(buffer_).first(size).subspan(kept.size()));
-  if (kept.size() + got < size) end_ = start + kept.size() + got;  // cut off since it was opened
-  view_ = std::span<const std::byte>(buffer_).first(kept.size() + got);
+  std::size_t filled = kept.size();
+  while (filled < size) {
+    // Readers tell how far they are, but not while they wait for more than a window.
+    const bool waited = filled > kept.size();
+    if (waited && input_.context != nullptr) input_.context->report("read", start, input_.size());
+    const std::size_t piece = std::min(input_.rest.window_bytes, size - filled);
+    const std::size_t got =
+        input_.rest.file->read(start + filled, {buffer_.data.get() + filled, piece});
+    filled += got;
+    if (got < piece) {  // cut off since it was opened
+      end_ = start + filled;
+      break;
+    }
+  }
+  view_ = buffer_.span().first(filled);
   view_at_ = start;
   used_ = 0;
 }

@@ -4,14 +4,13 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "engine/cloud/input.hpp"
 
 namespace landmarkdb {
 
 // Goes through an input from front to back; of a file that was not read whole, `window_bytes` are
-// in memory, or a word or line that is longer. Not thread-safe; the input must outlive it.
+// in memory, or what was asked for where that is more. Not thread-safe; the input must outlive it.
 class ByteWindow {
  public:
   // Starts at byte `at`, which must be among those of `input.bytes`.
@@ -24,7 +23,7 @@ class ByteWindow {
   std::uint64_t left() const { return end_ - at(); }
 
   // What follows and is in memory: at least `want` bytes, or all there are. Valid until it is asked
-  // again. Throws what InputFile::read and `check` of the input's context do.
+  // again. Throws what InputFile::read and the input's context do, which is asked once a window.
   std::span<const std::byte> ahead(std::size_t want) {
     if (view_.size() - used_ < want && at() + view_.size() - used_ < end_) fill(want);
     return view_.subspan(used_);
@@ -49,7 +48,7 @@ class ByteWindow {
   std::uint64_t view_at_;            // where the view starts in the file
   std::size_t used_ = 0;             // of the view, passed over
   std::uint64_t end_;                // of the file
-  std::vector<std::byte> buffer_;
+  FileBytes buffer_;
 };
 
 // Takes the next word; empty when there is none. Valid until the window is asked again.

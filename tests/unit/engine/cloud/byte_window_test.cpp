@@ -2,11 +2,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 
+#include "engine/base/error.hpp"
 #include "engine/cloud/text_lines.hpp"
 
 namespace landmarkdb {
@@ -80,6 +82,24 @@ TEST(ByteWindow, EndsWhereTheFileWasCutOffMeanwhile) {
   window.skip(40);
   EXPECT_EQ(window.ahead(100).size(), 40U);
   EXPECT_EQ(window.left(), 40U);
+}
+
+// A gigabyte asked for at once took seconds to stop.
+TEST(ByteWindow, AsksWhetherToGoOnOnceAWindowHoweverMuchIsWanted) {
+  const WindowedFile file(std::string(1000, 'x'), 50, 64);
+  std::stop_source stop;
+  RunContext context;
+  context.stop = stop.get_token();
+  int asked = 0;
+  context.progress = [&](const Progress&) {
+    ++asked;
+    stop.request_stop();
+  };
+  Input input = file.input();
+  input.context = &context;
+  ByteWindow window(input);
+  EXPECT_THROW(window.ahead(1000), Error);
+  EXPECT_EQ(asked, 1);
 }
 
 TEST(TakeWord, ReadsWordsOfAnyLengthAcrossTheEdges) {
