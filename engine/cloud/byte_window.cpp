@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "engine/base/run_context.hpp"
@@ -10,11 +11,22 @@
 namespace landmarkdb {
 namespace {
 
-constexpr std::size_t kUsualWord = 64;
-constexpr std::size_t kUsualLine = 256;
+constexpr std::size_t kUsual = 256;  // bytes of a line, or of a word and the blanks before it
+// Without it a file of one line would be in memory whole.
+constexpr std::size_t kLongest = std::size_t{16} << 20U;
 
 std::string_view as_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// How much to look at where the next `seen` bytes do not have the end of a word or line.
+std::size_t look_further(const ByteWindow& window, std::size_t seen) {
+  if (seen > kLongest) {
+    refuse(window.input(),
+           "the text from byte " + std::to_string(window.at()) +
+               " on has no word or line of at most " + std::to_string(kLongest) + " bytes");
+  }
+  return 2 * seen + kUsual;
 }
 
 }  // namespace
@@ -52,12 +64,12 @@ void ByteWindow::fill(std::size_t want) {
 }
 
 std::string_view take_word(ByteWindow& window) {
-  for (std::size_t want = kUsualWord;;) {
+  for (std::size_t want = kUsual;;) {
     const std::string_view all = as_text(window.ahead(want));
     std::string_view rest = all;
     const std::string_view word = take_word(rest);
     if (rest.empty() && window.left() > all.size()) {  // it may go on behind what is in memory
-      want = 2 * all.size() + kUsualWord;
+      want = look_further(window, all.size());
       continue;
     }
     window.skip(all.size() - rest.size());
@@ -66,13 +78,13 @@ std::string_view take_word(ByteWindow& window) {
 }
 
 bool LineWindow::next(std::string_view& line) {
-  for (std::size_t want = kUsualLine;;) {
+  for (std::size_t want = kUsual;;) {
     const std::string_view all = as_text(window_.ahead(want));
     LineReader lines(all);
     if (!lines.next(line)) return false;
     // A line end that comes last may be the first half of "\r\n".
     if (lines.at() == all.size() && window_.left() > all.size()) {
-      want = 2 * all.size() + kUsualLine;
+      want = look_further(window_, all.size());
       continue;
     }
     window_.skip(lines.at());

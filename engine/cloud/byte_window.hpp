@@ -21,6 +21,7 @@ class ByteWindow {
   std::uint64_t at() const { return view_at_ + used_; }
   // How many bytes follow, in memory or not.
   std::uint64_t left() const { return end_ - at(); }
+  const Input& input() const { return input_; }
 
   // What follows and is in memory: at least `want` bytes, or all there are. Valid until it is asked
   // again. Throws what InputFile::read and the input's context do, which is asked once a window.
@@ -51,10 +52,12 @@ class ByteWindow {
   FileBytes buffer_;
 };
 
-// Takes the next word; empty when there is none. Valid until the window is asked again.
+// Takes the next word; empty when there is none. Valid until the window is asked again. Throws
+// Error{kInvalidArgument} where a file that was not read whole has no end of a word for 16 MiB.
 std::string_view take_word(ByteWindow& window);
 
-// LineReader for a window: the same lines, each valid until the next.
+// LineReader for a window: the same lines, each valid until the next. Throws for lines as take_word
+// does for words.
 class LineWindow {
  public:
   explicit LineWindow(const Input& input) : window_(input) {}

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -114,6 +115,27 @@ TEST(TakeWord, ReadsWordsOfAnyLengthAcrossTheEdges) {
     ByteWindow window(file.input());
     for (const std::string& word : words) ASSERT_EQ(take_word(window), word);
     EXPECT_EQ(take_word(window), "");
+  }
+}
+
+// A file without any was read into memory whole, however large.
+TEST(LineWindow, RefusesAFileWithoutLineEnds) {
+  const std::string text = "1 2 3\n" + std::string(std::size_t{40} << 20U, '4');
+  const WindowedFile file(text, 64, 64);
+  LineWindow lines(file.input());
+  std::string_view line;
+  EXPECT_TRUE(lines.next(line));
+  ByteWindow words(file.input(), 6);
+  for (const auto& read :
+       std::vector<std::function<void()>>{[&] { lines.next(line); }, [&] { take_word(words); }}) {
+    try {
+      read();
+      ADD_FAILURE() << "taken";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("byte_window_test.txt: "));
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("from byte 6 on"));
+    }
   }
 }
 
