@@ -52,7 +52,7 @@ std::vector<std::uint32_t> weld(const Input& input, const Mesh& mesh) {
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
   std::uint64_t compared = 0;
   auto less = [&](std::uint32_t a, std::uint32_t b) {
-    input.tick(++compared, input.bytes.size());  // a throw leaves `order` in no order, and unused
+    input.tick(++compared, input.size());  // a throw leaves `order` in no order, and unused
     const Eigen::Vector3d& p = mesh.vertices[a];
     const Eigen::Vector3d& q = mesh.vertices[b];
     return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);

@@ -172,6 +172,32 @@ TEST_F(ReadCloudInBlocks, StopsInTheMiddleAndTellsTheBytesOfTheFile) {
   }
 }
 
+// While vertices were sorted it fell back to the size of the window.
+TEST_F(ReadCloudInBlocks, TellsOfAMeshNoFewerBytesThanBefore) {
+  constexpr int kSide = 40;
+  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(kSide * kSide) +
+                     "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                     std::to_string(kSide * kSide) +
+                     "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int i = 0; i < kSide * kSide; ++i) {
+    text += std::to_string(i % kSide) + ' ' + std::to_string(i / kSide) + " 0\n";
+  }
+  for (int i = 0; i < kSide * kSide; ++i) {
+    text += "3 0 " + std::to_string(i) + ' ' + std::to_string(kSide * kSide - 1) + '\n';
+  }
+  write({"mesh.ply", text});
+  std::uint64_t done = 0;
+  RunContext context;
+  context.progress = [&](const Progress& progress) {
+    if (progress.stage != "read") return;
+    EXPECT_GE(progress.done, done);
+    done = progress.done;
+  };
+  const ReadOptions options{.mesh_spacing_m = 5.0, .window_bytes = 1024};
+  read_cloud_in_blocks(path_, options, context, {.take = [](const PointCloud&) {}});
+  EXPECT_EQ(done, text.size());
+}
+
 TEST_F(ReadCloudInBlocks, LetsThroughWhatTheSinkThrows) {
   write({"a.xyz", testing::xyz_text(kPoints)});
   const CloudSink sink{5000,
