@@ -55,8 +55,9 @@ struct CloudSink {
 };
 
 // read_cloud for a file of which no more than a block and a few megabytes are to be in memory.
-// Three are held whole all the same: OBJ, STL and PLY meshes, with what is sampled from them, as
-// one block; and the body of a compressed PCD file, packed and unpacked, which is at most 4 GiB.
+// Held whole all the same are OBJ, STL and PLY meshes, with what is sampled from them, as one
+// block; and the body of a compressed PCD file, packed and unpacked, each of which is at most 4
+// GiB.
 void read_cloud_in_blocks(const std::filesystem::path& path,
                           const ReadOptions& options,
                           const RunContext& context,

@@ -16,8 +16,10 @@ PointCloud thin(const PointCloud& cloud, double voxel_m, const RunContext& conte
 
 // Leaves one point a cell of edge `cell_m`, as thin does, with its weight, at the place of the
 // cell's first one: thinned afterwards to voxels of whole cells, the cloud is what it would have
-// been but for float rounding and colours. Its rows and columns are gone. Memory beside what is
-// left: some 20 bytes a point. Throws as thin; the cloud is then of no use.
+// been but for float rounding, colours, and normals, of which each cell's mean has unit length. Its
+// rows and columns are gone. Memory beside what is left: some 20 bytes a point, 40 where cells and
+// points cannot be numbered together in 64 bits (a hall of 60 m in cells of 3 mm). Throws as thin;
+// the cloud is then of no use.
 void condense(PointCloud& cloud, double cell_m, const RunContext& context = {});
 
 }  // namespace landmarkdb
