@@ -65,7 +65,9 @@ void CloudMerger::append(const PointCloud& block, const RunContext& context) {
 void CloudMerger::choose_what_to_keep(const PointCloud& block) {
   normals_ = normals_ && block.normals.size() == block.size();
   colours_ = colours_ && block.colours.size() == block.size();
-  viewpoints_ = viewpoints_ && !block.viewpoints.empty();
+  all_have_viewpoints_ = all_have_viewpoints_ && !block.viewpoints.empty();
+  if (scan_is_new_) viewpoint_count_ += block.viewpoints.size();
+  viewpoints_ = all_have_viewpoints_ && viewpoint_count_ <= kMostViewpoints;
   if (!normals_) merged_.normals = {};
   if (!colours_) merged_.colours = {};
   if (!viewpoints_) drop_viewpoints();
@@ -78,18 +80,17 @@ void CloudMerger::drop_viewpoints() {
 
 void CloudMerger::add_viewpoints(const PointCloud& block, const Eigen::Vector3d& t) {
   first_viewpoint_ = merged_.viewpoints.size();
-  const std::size_t count = first_viewpoint_ + block.viewpoints.size();
-  if (count > kMostViewpoints) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "the clouds have " + std::to_string(count) + " viewpoints, want at most " +
-                    std::to_string(kMostViewpoints));
-  }
   for (const Eigen::Vector3f& viewpoint : block.viewpoints) {
     merged_.viewpoints.push_back(carry(T_scene_cloud_.linear(), t, viewpoint));
   }
 }
 
 PointCloud CloudMerger::finish() {
+  if (all_have_viewpoints_ && viewpoint_count_ > kMostViewpoints) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "the clouds have " + std::to_string(viewpoint_count_) +
+                    " viewpoints, want at most " + std::to_string(kMostViewpoints));
+  }
   if (merged_.viewpoints.size() <= 1) merged_.viewpoint_index.clear();
   PointCloud merged = std::exchange(merged_, {});
   *this = {};

@@ -20,8 +20,7 @@ class CloudMerger {
   void begin_scan(const Eigen::Isometry3d& T_scene_cloud);
 
   // A sanitised cloud, or a block of one: all blocks of a scan have its origin and viewpoints.
-  // Throws Error{kInvalidArgument} when there are more viewpoints than 16 bits count, and what
-  // `context.check` does.
+  // Throws what `context.check` does.
   void append(const PointCloud& block, const RunContext& context = {});
 
   void reserve(std::size_t points);
@@ -31,8 +30,9 @@ class CloudMerger {
   const PointCloud& cloud() const { return merged_; }
   PointCloud& cloud() { return merged_; }
 
-  // All of it; numbers are left out where there is one viewpoint only. The merger is empty
-  // afterwards.
+  // All of it; numbers are left out where there is one viewpoint only. Throws
+  // Error{kInvalidArgument} when all points have viewpoints, and these are more than 16 bits count.
+  // The merger is empty afterwards.
   PointCloud finish();
 
  private:
@@ -44,6 +44,8 @@ class CloudMerger {
   Eigen::Isometry3d T_scene_cloud_ = Eigen::Isometry3d::Identity();
   bool any_ = false;  // points appended so far
   bool normals_ = true, colours_ = true, viewpoints_ = true;
+  bool all_have_viewpoints_ = true;
+  std::size_t viewpoint_count_ = 0;
   bool scan_is_new_ = true;  // none of its viewpoints are there yet
   std::size_t first_viewpoint_ = 0;
 };

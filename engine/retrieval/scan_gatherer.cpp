@@ -106,7 +106,8 @@ void ScanGatherer::go_over_to_blocks() {
 
 void ScanGatherer::lay_down(PointCloud block) {
   add_counts(counts_, sanitiser_.sanitise(block, context_));
-  merger_.reserve(room_for_ + block_points());
+  // A scan that came whole may be larger than a block; vectors that grow would hold it twice.
+  merger_.reserve(std::max(room_for_ + block_points(), merger_.cloud().size() + block.size()));
   merger_.append(block, context_);
   block = {};
   if (merger_.cloud().size() > room_for_) condense_what_is_there();

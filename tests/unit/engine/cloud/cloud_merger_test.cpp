@@ -101,21 +101,39 @@ TEST(CloudMerger, CountsNewPointsOnceWhereOthersWereCondensed) {
   EXPECT_EQ(merged.weights.size(), merged.size());
 }
 
-TEST(CloudMerger, RefusesMoreViewpointsThanSixteenBitsCount) {
-  CloudMerger merger;
-  PointCloud cloud = scan(0, 1);
+// Two scans of 40,000 viewpoints each: more together than 16 bits count.
+CloudMerger with_too_many_viewpoints() {
+  PointCloud cloud = scan(0.0F, 1);
+  cloud.viewpoint_index.assign(cloud.size(), 39'999);
   cloud.viewpoints.assign(40'000, Eigen::Vector3f::Zero());
-  merger.begin_scan(turned());
-  merger.append(cloud);
-  merger.append(cloud);  // the same scan has the same
-  merger.begin_scan(turned());
-  try {
+  CloudMerger merger;
+  for (int k = 0; k < 2; ++k) {
+    merger.begin_scan(Eigen::Isometry3d::Identity());
     merger.append(cloud);
-    ADD_FAILURE() << "taken";
+    merger.append(cloud);  // a block of the same scan has the same viewpoints
+  }
+  return merger;
+}
+
+TEST(CloudMerger, RefusesMoreViewpointsThanSixteenBitsCount) {
+  CloudMerger merger = with_too_many_viewpoints();
+  try {
+    merger.finish();
+    FAIL() << "took 80,000 viewpoints";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);
     EXPECT_THAT(error.what(), ::testing::HasSubstr("80000 viewpoints"));
   }
+}
+
+TEST(CloudMerger, DropsTooManyViewpointsWhereSomePointsHaveNone) {
+  CloudMerger merger = with_too_many_viewpoints();
+  merger.begin_scan(Eigen::Isometry3d::Identity());
+  merger.append(scan(1.0F, 0));
+  const PointCloud merged = merger.finish();
+  EXPECT_EQ(merged.size(), 5 * scan(0.0F, 1).size());
+  EXPECT_TRUE(merged.viewpoints.empty());
+  EXPECT_TRUE(merged.viewpoint_index.empty());
 }
 
 }  // namespace
