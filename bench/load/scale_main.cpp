@@ -27,7 +27,8 @@ struct Settings {
   std::vector<std::size_t> sizes = {10, 100};
   SiteOptions site;
   std::size_t frames = 20;
-  std::string folder;  // databases are kept here; empty: not kept
+  std::size_t strangers = 0;  // frames of places that are in no database
+  std::string folder;         // databases are kept here; empty: not kept
   double most_seconds = 3600.0;
   int threads = 0;
   std::string json;
@@ -35,12 +36,28 @@ struct Settings {
 
 struct Row {
   std::size_t places = 0, localized = 0, right_place = 0, right_pose = 0, ambiguous = 0;
+  std::size_t strangers = 0, strangers_localized = 0;
   std::uint64_t keypoints = 0, database_bytes = 0, resident_bytes = 0, peak_bytes = 0;
   double ready_s = 0.0;
   std::vector<double> total_ms, match_ms, pose_ms, other_ms;
 };
 
 using Milliseconds = std::chrono::duration<double, std::milli>;
+
+// Frames of as many places as there are frames, with seeds beyond those of any database.
+std::vector<SiteFrame> take_strange_frames(const Settings& settings, const RunContext& context) {
+  if (settings.strangers == 0) return {};
+  constexpr std::uint64_t kBeyond = 40'000;
+  SiteOptions elsewhere = settings.site;
+  elsewhere.seed += kBeyond;
+  return take_frames(elsewhere, settings.strangers, settings.strangers, 0, context);
+}
+
+void ask_stranger(client::Client& client, const SiteFrame& frame, Row& row) {
+  const std::vector<QueryCloud> question{{frame.cloud}};
+  ++row.strangers;
+  if (client.query(question, {}, {}).status == QueryStatus::kLocalized) ++row.strangers_localized;
+}
 
 void ask(client::Client& client, const SiteFrame& frame, Row& row) {
   const auto sent = std::chrono::steady_clock::now();
@@ -64,6 +81,7 @@ void ask(client::Client& client, const SiteFrame& frame, Row& row) {
 Row measure(const std::string& db,
             std::size_t places,
             const std::vector<SiteFrame>& frames,
+            const std::vector<SiteFrame>& strangers,
             int threads) {
   Row row;
   row.places = places;
@@ -76,6 +94,7 @@ Row measure(const std::string& db,
   for (const SiteFrame& frame : frames) ask(client, frame, row);
   row.resident_bytes = client.stats({}).resident_bytes;
   row.peak_bytes = server.peak_resident_bytes();
+  for (const SiteFrame& frame : strangers) ask_stranger(client, frame, row);
   return row;
 }
 
@@ -87,6 +106,8 @@ nlohmann::json to_json(const Row& row) {
           {"right_place", row.right_place},
           {"right_pose", row.right_pose},
           {"ambiguous", row.ambiguous},
+          {"strangers", row.strangers},
+          {"strangers_localized", row.strangers_localized},
           {"median_ms", quantile(row.total_ms, 0.5)},
           {"p95_ms", quantile(row.total_ms, 0.95)},
           {"match_ms", quantile(row.match_ms, 0.5)},
@@ -102,14 +123,16 @@ void print_header() {
   std::printf(
       "| places | keypoints | median ms | p95 ms | match | pose | other | localized | right place "
       "| "
-      "right pose | ready s | resident MB | peak MB | database MB |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+      "right pose | strangers localized | ready s | resident MB | peak MB | database MB |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- "
+      "|\n");
 }
 
 void print_row(const Row& row) {
   constexpr double kMega = 1e6;
   std::printf(
-      "| %zu | %llu | %.0f | %.0f | %.0f | %.0f | %.0f | %zu of %zu | %zu | %zu | %.2f | %.0f | "
+      "| %zu | %llu | %.0f | %.0f | %.0f | %.0f | %.0f | %zu of %zu | %zu | %zu | %zu of %zu | "
+      "%.2f | %.0f | "
       "%.0f | %.0f |\n",
       row.places,
       static_cast<unsigned long long>(row.keypoints),
@@ -122,6 +145,8 @@ void print_row(const Row& row) {
       row.total_ms.size(),
       row.right_place,
       row.right_pose,
+      row.strangers_localized,
+      row.strangers,
       row.ready_s,
       static_cast<double>(row.resident_bytes) / kMega,
       static_cast<double>(row.peak_bytes) / kMega,
@@ -146,10 +171,11 @@ int run(const Settings& settings) {
   }
   const std::vector<SiteFrame> frames =
       take_frames(settings.site, kAskedPlaces, settings.frames, 0, context);
+  const std::vector<SiteFrame> strangers = take_strange_frames(settings, context);
   nlohmann::json rows = nlohmann::json::array();
   print_header();
   for (const std::size_t places : settings.sizes) {
-    const Row row = measure(file_of(places), places, frames, settings.threads);
+    const Row row = measure(file_of(places), places, frames, strangers, settings.threads);
     print_row(row);
     rows.push_back(to_json(row));
   }
@@ -180,6 +206,9 @@ int main(int argc, char** argv) {
   app.add_option("--frames", settings.frames, "Frames, of the first ten places in turn")
       ->capture_default_str()
       ->check(CLI::Range(1, 10'000));
+  app.add_option("--strangers", settings.strangers, "Frames of as many places that are not there")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 10'000));
   app.add_option("--seed", settings.site.seed, "Of the first place")->capture_default_str();
   app.add_option(
          "--keep", settings.folder, "Keep the databases in this folder, and use those there")
