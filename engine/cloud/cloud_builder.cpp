@@ -53,8 +53,8 @@ void CloudBuilder::reserve_block() {
   if (colours_) cloud_.colours.reserve(points);
 }
 
-PointCloud CloudBuilder::take_block(std::span<const Eigen::Vector3d> viewpoints) {
-  for (const Eigen::Vector3d& viewpoint : viewpoints) {
+PointCloud CloudBuilder::take_block() {
+  for (const Eigen::Vector3d& viewpoint : viewpoints_) {
     cloud_.viewpoints.push_back(to_local(metres_ * viewpoint, cloud_.origin));
   }
   return std::exchange(cloud_, {});
@@ -64,7 +64,7 @@ void CloudBuilder::add_point(const Eigen::Vector3d& p_file) {
   if (sink_ != nullptr && cloud_.points.size() >= sink_->block_points) {
     const Eigen::Vector3d origin = cloud_.origin;
     handed_ += cloud_.points.size();
-    sink_->take(take_block(viewpoints_));
+    sink_->take(take_block());
     cloud_.origin = origin;
     reserve_block();
   }
@@ -110,9 +110,9 @@ void CloudBuilder::decide_origin() {
   pending_ = {};
 }
 
-PointCloud CloudBuilder::finish(std::span<const Eigen::Vector3d> viewpoints) {
+PointCloud CloudBuilder::finish() {
   if (!decided_) decide_origin();
-  return take_block(viewpoints);
+  return take_block();
 }
 
 }  // namespace landmarkdb

@@ -29,7 +29,7 @@ class CloudBuilder {
                         const Eigen::Isometry3d& T_world_file = Eigen::Isometry3d::Identity());
 
   // From now on whole blocks are handed to the sink, which must outlive the builder, and finish
-  // returns what is left. `viewpoints` as there.
+  // returns what is left. `viewpoints` in file units, world frame: of every block.
   void hand_to(const CloudSink& sink, std::span<const Eigen::Vector3d> viewpoints);
   // Whether that has happened to a block.
   bool in_blocks() const { return handed_ > 0; }
@@ -42,13 +42,13 @@ class CloudBuilder {
   void add_viewpoint_index(std::uint16_t index);
   std::size_t size() const { return handed_ + cloud_.points.size() + pending_.size(); }
 
-  // `viewpoints` in file units, world frame. The builder is empty afterwards.
-  PointCloud finish(std::span<const Eigen::Vector3d> viewpoints);
+  // The builder is empty afterwards.
+  PointCloud finish();
 
  private:
   void decide_origin();
   void reserve_block();
-  PointCloud take_block(std::span<const Eigen::Vector3d> viewpoints);
+  PointCloud take_block();
 
   double metres_;
   Eigen::Isometry3d T_world_file_;

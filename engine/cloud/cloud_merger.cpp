@@ -29,9 +29,9 @@ void CloudMerger::begin_scan(const Eigen::Isometry3d& T_scene_cloud) {
 
 void CloudMerger::reserve(std::size_t points) {
   merged_.points.reserve(points);
-  if (normals_ && !merged_.normals.empty()) merged_.normals.reserve(points);
-  if (colours_ && !merged_.colours.empty()) merged_.colours.reserve(points);
-  if (viewpoints_ && !merged_.viewpoint_index.empty()) merged_.viewpoint_index.reserve(points);
+  if (!merged_.normals.empty()) merged_.normals.reserve(points);
+  if (!merged_.colours.empty()) merged_.colours.reserve(points);
+  if (!merged_.viewpoint_index.empty()) merged_.viewpoint_index.reserve(points);
   if (!merged_.weights.empty()) merged_.weights.reserve(points);
 }
 
@@ -39,26 +39,28 @@ void CloudMerger::append(const PointCloud& block, const RunContext& context) {
   if (block.empty()) return;
   choose_what_to_keep(block);
   const Eigen::Matrix3d R = T_scene_cloud_.linear();
-  if (!any_) {
+  if (merged_.empty()) {
     // Zero when float keeps the points there. All scans of one place are near each other.
     const Eigen::Vector3f& middle = block.points[block.size() / 2];
     merged_.origin =
         round_origin(T_scene_cloud_ * Eigen::Vector3d(block.origin + middle.cast<double>()));
   }
   const Eigen::Vector3d t = T_scene_cloud_ * block.origin - merged_.origin;
-  if (viewpoints_ && scan_is_new_) add_viewpoints(block, t);
+  if (keeps_viewpoints() && scan_is_new_) add_viewpoints(block, t);
+  // All blocks of the scan have its viewpoints, which were added last.
+  const std::size_t first_viewpoint =
+      keeps_viewpoints() ? merged_.viewpoints.size() - block.viewpoints.size() : 0;
   for (std::size_t i = 0; i < block.size(); ++i) {
     if (i % kBetweenChecks == 0) context.check("preprocess");
     merged_.points.push_back(carry(R, t, block.points[i]));
     if (normals_) merged_.normals.push_back((R * block.normals[i].cast<double>()).cast<float>());
     if (colours_) merged_.colours.push_back(block.colours[i]);
-    if (viewpoints_) {
+    if (keeps_viewpoints()) {
       const std::size_t own = block.viewpoint_index.empty() ? 0 : block.viewpoint_index[i];
-      merged_.viewpoint_index.push_back(static_cast<std::uint16_t>(first_viewpoint_ + own));
+      merged_.viewpoint_index.push_back(static_cast<std::uint16_t>(first_viewpoint + own));
     }
   }
   if (!merged_.weights.empty()) merged_.weights.resize(merged_.size(), 1);
-  any_ = true;
   scan_is_new_ = false;
 }
 
@@ -67,19 +69,19 @@ void CloudMerger::choose_what_to_keep(const PointCloud& block) {
   colours_ = colours_ && block.colours.size() == block.size();
   all_have_viewpoints_ = all_have_viewpoints_ && !block.viewpoints.empty();
   if (scan_is_new_) viewpoint_count_ += block.viewpoints.size();
-  viewpoints_ = all_have_viewpoints_ && viewpoint_count_ <= kMostViewpoints;
   if (!normals_) merged_.normals = {};
   if (!colours_) merged_.colours = {};
-  if (!viewpoints_) drop_viewpoints();
+  if (!keeps_viewpoints()) {
+    merged_.viewpoints = {};
+    merged_.viewpoint_index = {};
+  }
 }
 
-void CloudMerger::drop_viewpoints() {
-  merged_.viewpoints = {};
-  merged_.viewpoint_index = {};
+bool CloudMerger::keeps_viewpoints() const {
+  return all_have_viewpoints_ && viewpoint_count_ <= kMostViewpoints;
 }
 
 void CloudMerger::add_viewpoints(const PointCloud& block, const Eigen::Vector3d& t) {
-  first_viewpoint_ = merged_.viewpoints.size();
   for (const Eigen::Vector3f& viewpoint : block.viewpoints) {
     merged_.viewpoints.push_back(carry(T_scene_cloud_.linear(), t, viewpoint));
   }

@@ -38,16 +38,14 @@ class CloudMerger {
  private:
   void choose_what_to_keep(const PointCloud& block);
   void add_viewpoints(const PointCloud& block, const Eigen::Vector3d& t);
-  void drop_viewpoints();
+  bool keeps_viewpoints() const;
 
   PointCloud merged_;
   Eigen::Isometry3d T_scene_cloud_ = Eigen::Isometry3d::Identity();
-  bool any_ = false;  // points appended so far
-  bool normals_ = true, colours_ = true, viewpoints_ = true;
+  bool normals_ = true, colours_ = true;  // all points so far have them
   bool all_have_viewpoints_ = true;
-  std::size_t viewpoint_count_ = 0;
-  bool scan_is_new_ = true;  // none of its viewpoints are there yet
-  std::size_t first_viewpoint_ = 0;
+  std::size_t viewpoint_count_ = 0;  // of all scans, kept or not
+  bool scan_is_new_ = true;          // none of its viewpoints are there yet
 };
 
 }  // namespace landmarkdb

@@ -11,16 +11,8 @@ namespace landmarkdb {
 
 namespace {
 
-void add(const CloudCounts& more, CloudCounts& counts) {
-  counts.points += more.points;
-  counts.not_finite += more.not_finite;
-  counts.duplicates += more.duplicates;
-  counts.out_of_range += more.out_of_range;
-  counts.used += more.used;
-}
-
 PointCloud clean(PointCloud cloud, CloudCounts& counts, const RunContext& context) {
-  add(sanitise(cloud, context), counts);
+  add_counts(counts, sanitise(cloud, context));
   if (cloud.viewpoints.empty()) {
     cloud.viewpoints.emplace_back(-cloud.origin.cast<float>());
     cloud.viewpoint_index.clear();

@@ -228,7 +228,7 @@ PointCloud sample_mesh(const Input& input, const Mesh& mesh, const ReadOptions& 
     refuse(input,
            "a mesh too small to be sampled every " + std::to_string(options.mesh_spacing_m) + " m");
   }
-  return builder.finish({});
+  return builder.finish();
 }
 
 }  // namespace landmarkdb

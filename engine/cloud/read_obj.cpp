@@ -136,7 +136,7 @@ PointCloud parse_obj(const Input& input, const ReadOptions& options) {
   CloudBuilder builder(metres_per(options.units));
   for (const Eigen::Vector3d& vertex : mesh.vertices) builder.add_point(vertex);
   for (const auto& colour : mesh.colours) builder.add_colour(colour);
-  return builder.finish({});
+  return builder.finish();
 }
 
 }  // namespace landmarkdb

@@ -205,7 +205,7 @@ void parse_pcd(const Input& input, const ReadOptions& options, const CloudSink& 
     if (normals) builder.add_normal(take(reader, roles.normal));
     if (colours) builder.add_colour(take_colour(reader, roles));
   }
-  PointCloud last = builder.finish(viewpoints);
+  PointCloud last = builder.finish();
   if (organised && !builder.in_blocks()) {
     last.width = header.width;
     last.height = header.height;

@@ -189,7 +189,7 @@ void read_points(const Input& input,
           take_viewpoint(input, row[columns.viewpoint], header.viewpoints.size()));
     }
   }
-  sink.take(builder.finish(header.viewpoints));
+  sink.take(builder.finish());
 }
 
 void read_mesh_vertices(const Input& input,

@@ -170,7 +170,7 @@ class TextCloudReader {
                  std::to_string(builder_.size()) + " (truncated file?)");
     }
     if (builder_.size() == 0) refuse(input_, "text without any points");
-    sink_.take(builder_.finish({}));
+    sink_.take(builder_.finish());
   }
 
  private:

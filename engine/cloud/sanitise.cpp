@@ -128,6 +128,14 @@ void check_viewpoints(PointCloud& cloud) {
 
 }  // namespace
 
+void add_counts(CloudCounts& sum, const CloudCounts& part) {
+  sum.points += part.points;
+  sum.not_finite += part.not_finite;
+  sum.duplicates += part.duplicates;
+  sum.out_of_range += part.out_of_range;
+  sum.used += part.used;
+}
+
 void repair_normals(PointCloud& cloud, const RunContext& context) {
   const std::vector<Eigen::Vector3f>& points = cloud.points;
   std::vector<Eigen::Vector3f>& normals = cloud.normals;

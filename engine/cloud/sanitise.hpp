@@ -35,6 +35,9 @@ class BlockSanitiser {
   std::vector<Eigen::Vector3f> sample_;  // of all blocks so far
 };
 
+// Adds what was counted of a part to the sum.
+void add_counts(CloudCounts& sum, const CloudCounts& part);
+
 // What sanitise does to the normals. Throws what `context.check` does.
 void repair_normals(PointCloud& cloud, const RunContext& context = {});
 

@@ -100,13 +100,13 @@ std::vector<PlaceScore> place_scores(const SearchInput& input,
                                      const Level& level,
                                      const QueryView& view) {
   const DescriptorSet query = some_of(view.descriptors);
+  std::vector<std::size_t> parts;  // the wanted ones among the level's entries
+  for (std::size_t i = 0; i < level.entries.size(); ++i) {
+    if (input.wanted[level.entries[i]]) parts.push_back(i);
+  }
   std::vector<std::vector<Correspondence>> pairs;
   {
     const StageTimer timer(input.timings.match);
-    std::vector<std::size_t> parts;
-    for (std::size_t i = 0; i < level.entries.size(); ++i) {
-      if (input.wanted[level.entries[i]]) parts.push_back(i);
-    }
     std::vector<DescriptorMatch> found;
     if (parts.size() == level.entries.size()) {
       level.index->search(query.values, kNeighbours, found, input.context);
@@ -119,15 +119,15 @@ std::vector<PlaceScore> place_scores(const SearchInput& input,
   std::size_t places = 0;
   for (const Level& one : input.levels) places += one.entries.size();
   const std::size_t most_tried = std::max(kTriedAtLeast, kTried / places);
-  std::vector<PlaceScore> scores(level.entries.size());
+  std::vector<PlaceScore> scores(parts.size());
   parallel_each(scores.size(), input.context.threads, [&](std::size_t i) {
     input.context.check("pose");
-    scores[i].entry = level.entries[i];
-    if (pairs[i].empty() || !input.wanted[scores[i].entry]) return;
+    const std::vector<Correspondence>& own = pairs[parts[i]];
+    scores[i].entry = level.entries[parts[i]];
+    if (own.empty()) return;
     scores[i].score =
-        score_of(input, input.entries[scores[i].entry], view.test, query, pairs[i], most_tried);
+        score_of(input, input.entries[scores[i].entry], view.test, query, own, most_tried);
   });
-  std::erase_if(scores, [&](const PlaceScore& one) { return !input.wanted[one.entry]; });
   set_standings(scores);
   return scores;
 }

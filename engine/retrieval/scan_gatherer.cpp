@@ -19,14 +19,6 @@ namespace {
 constexpr double kFinestCells = 16.0;   // 3 mm at 5 cm: a scanner's noise
 constexpr double kCoarsestCells = 2.0;  // coarser ones would shift what is seen of a voxel
 
-void add_counts(CloudCounts& sum, const CloudCounts& part) {
-  sum.points += part.points;
-  sum.not_finite += part.not_finite;
-  sum.duplicates += part.duplicates;
-  sum.out_of_range += part.out_of_range;
-  sum.used += part.used;
-}
-
 template <typename T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
