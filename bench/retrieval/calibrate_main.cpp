@@ -41,7 +41,7 @@ std::string features_help() {
   std::string text = "Fit these alone, a,b,c, of:";
   for (const Feature& feature : all_features()) text += " " + std::string(feature.name);
   return text +
-         " (those from log_agreeing on only when named; contrast and root_contradicted where all "
+         " (those from log_agreeing on only when named; contrast and log_contradicted where all "
          "files have "
          "them)";
 }

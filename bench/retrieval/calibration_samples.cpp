@@ -11,11 +11,12 @@ namespace {
 
 constexpr double kFullMargin = 0.4;          // as in engine/retrieval/confidence.cpp
 constexpr double kFullObservability = 0.05;  // likewise
+constexpr double kHardlyAny = 0.003;         // likewise
 constexpr double kFullStructure = 0.3;       // as in engine/retrieval/object_confidence.cpp
 
 double as_it_is(double x) { return x; }
-double root(double x) { return std::sqrt(std::max(x, 0.0)); }
 double log_count(double x) { return std::log1p(std::max(x, 0.0)); }
+double log_share(double x) { return std::log1p(std::max(x, 0.0) / kHardlyAny); }
 
 constexpr auto kAlways = Feature::Use::kAlways;
 constexpr auto kWherePresent = Feature::Use::kWherePresent;
@@ -37,9 +38,9 @@ const Feature kFeatures[] = {
     {"crossed", "crossed", "crossed", as_it_is, kAlways},
     {"log_inliers", "inliers", "log(1 + inliers)", log_count, kAlways},
     {"contrast", "contrast", "contrast", as_it_is, kWherePresent},
-    {"root_contradicted", "contradicted", "sqrt(contradicted)", root, kWherePresent},
+    {"log_contradicted", "contradicted", "log(1 + contradicted / 0.003)", log_share, kWherePresent},
     {"log_agreeing", "agreeing", "log(1 + agreeing)", log_count, kOnRequest},
-    {"root_refuted", "refuted", "sqrt(refuted)", root, kOnRequest},
+    {"log_refuted", "refuted", "log(1 + refuted / 0.003)", log_share, kOnRequest},
     {"quality", "quality", "quality", as_it_is, kOnRequest},
     {"coverage", "coverage", "coverage", as_it_is, kOnRequest},
     {"outgrown", "outgrown", "outgrown", as_it_is, kOnRequest},

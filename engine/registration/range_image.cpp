@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // What a direction says of a pose; below zero it contradicts.
-constexpr signed char kAgrees = 1, kCrossed = -1, kHidden = -2;
+constexpr signed char kAgrees = 1, kNothing = 0, kCrossed = -1, kHidden = -2;
 constexpr int kWidestPatch = 6;  // cells to each side: what stands at the lens fills no more
 
 }  // namespace
@@ -356,22 +356,21 @@ SightCounts RangeImage::compare(const SightSurface& surface,
   const std::vector<Predicted>& predicted = rendered.predicted;
   SightCounts counts;
   counts.measured = inner_.size();
-  std::vector<signed char> says(inner_.size(), 0);  // kAgrees, kCrossed, kHidden; 0: nothing
+  std::vector<signed char> says(inner_.size(), kNothing);
+  const auto compared = [](const Predicted& patch, const Cell& wide, float slack) -> signed char {
+    if (patch.range < wide.nearest - slack) return kCrossed;
+    if (patch.back) return kNothing;
+    return patch.range <= wide.furthest + slack ? kAgrees : kHidden;
+  };
   visit_inner(rendered.boxes, [&](std::uint32_t i, const Place&) {
     if (predicted[i].range == kInfinity) return;
     const Cell& wide = widened_[inner_[i]];
-    const bool front = !predicted[i].back;
     const float slack = tolerance.metres + tolerance.share * wide.furthest;
-    if (predicted[i].range < wide.nearest - slack) {
-      ++counts.crossed;
-      says[i] = kCrossed;
-    } else if (front && predicted[i].range <= wide.furthest + slack) {
-      ++counts.agree;
-      says[i] = kAgrees;
-    } else if (front) {
-      ++counts.hidden;
-      says[i] = kHidden;
-    }
+    const signed char said = compared(predicted[i], wide, slack);
+    counts.crossed += said == kCrossed ? 1U : 0U;
+    counts.agree += said == kAgrees ? 1U : 0U;
+    counts.hidden += said == kHidden ? 1U : 0U;
+    says[i] = compared(predicted[i], wide, tolerance.solid * slack);
   });
   count_solid(rendered.boxes, says, counts);
   return counts;

@@ -24,8 +24,9 @@ struct SightCounts {
   // of a surface further off (seen through a gap of its scan), and nothing is said.
   std::size_t predicted() const { return agree + crossed + hidden; }
 
-  // Of those crossed or hidden: the eight directions around are none that agree. A silhouette half
-  // a cell off leaves a line of contradictions; something that is not there leaves an area.
+  // Crossed or hidden by SightTolerance::solid of the tolerance, and the eight directions around
+  // are none that agree as closely. A silhouette half a cell off leaves a line of contradictions;
+  // something that is not there leaves an area.
   std::size_t solid = 0;
   std::size_t solid_crossed = 0;  // of these, those crossed
 
@@ -41,10 +42,12 @@ struct OutlineCounts {
 };
 
 // How far before or behind the measured range still counts as seen: fixed, and a share of the
-// range.
+// range. What contradicts in an area must be off by no more than `solid` of that: an area of noise
+// does not agree with itself, so that less of it is enough.
 struct SightTolerance {
   float metres = 0.0F;
   float share = 0.0F;
+  float solid = 1.0F;
 };
 
 // The points of each of the viewpoints, in their order; without an index all are of the first.

@@ -86,7 +86,8 @@ void measure_sight(std::span<const RangeImage> ranges,
                    const VerifyOptions& options,
                    Evidence& evidence) {
   const SightTolerance tolerance{static_cast<float>(options.sight_tolerance_cells * cell_m),
-                                 static_cast<float>(options.sight_tolerance_range)};
+                                 static_cast<float>(options.sight_tolerance_range),
+                                 static_cast<float>(options.contradiction_share)};
   SightCounts counts;
   for (const RangeImage& image : ranges) {
     counts += image.compare(entry, T_sensor_entry, static_cast<float>(cell_m), tolerance);

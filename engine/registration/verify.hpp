@@ -52,6 +52,8 @@ struct VerifyOptions {
   double sight_tolerance_cells = 2.0;  // for free space, plus the next
   double sight_tolerance_range =
       0.02;  // share of the range: a depth camera's noise, and the angle of a cell
+  // Of this tolerance, what an area must be off by to be contradicted.
+  double contradiction_share = 1.0;
   // Whether a surface before which something was measured is contradicted: not where clutter may
   // stand before it.
   bool hidden_contradicts = true;

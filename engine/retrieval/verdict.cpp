@@ -140,20 +140,13 @@ bool leaves_free_space(const Evidence& evidence, const VerdictOptions& options) 
          evidence.refuted <= options.most_refuted;
 }
 
-// What is asked of a place's pose that is not sure.
-bool holds_as_place(const Evidence& evidence, const VerdictOptions& options) {
-  return leaves_free_space(evidence, options) &&
-         evidence.contrast >= options.least_contrast_of_place;
-}
-
 bool is_taken(const Standing& best, const VerdictOptions& options) {
   if (is_rivalled(best, options) || best.judged.confidence < options.min_confidence) return false;
   const Assessed& pose = best.judged.pose;
-  if (pose.evidence.of_object && !holds_as_object(best, options)) return false;
-  if (is_sure(best, options)) return true;
-  return pose.evidence.of_object
-             ? confidence_alone(pose.evidence, pose.score) >= options.least_alone
-             : holds_as_place(pose.evidence, options);
+  if (!pose.evidence.of_object) return true;
+  if (!holds_as_object(best, options)) return false;
+  return is_sure(best, options) ||
+         confidence_alone(pose.evidence, pose.score) >= options.least_alone;
 }
 
 // Whether the pose's own evidence would do, were there no rivals.

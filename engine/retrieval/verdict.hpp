@@ -30,14 +30,13 @@ struct VerdictOptions {
   double rival_share = 0.93;
   // What would be localized without the rivals that reach this share is ambiguous.
   double close_share = 0.85;
-  // From this confidence on the rest is not asked, being in it.
-  double sure_confidence = 0.8;
-  // Of a place, below that confidence: what an area of the view contradicts by more than this share
-  // is another place, and so is what puts more than this share of the view where the scanner looked
-  // through, or what the points clearly speak against (a contrast of -0.2: 60 to 40 %).
+  // Of a place that has rivals: what an area of the view contradicts by more than this share is
+  // another place, and so is what puts more than this share of the view where the scanner looked
+  // through. Without rivals both are in the confidence.
   double most_contradicted = 0.05;
   double most_refuted = 0.005;
-  double least_contrast_of_place = -0.2;
+  // Of an object, from this confidence on the rest is not asked, being in it.
+  double sure_confidence = 0.8;
   // Of an object, below that confidence. A rival against which hardly more of the points that tell
   // the two apart speak for the best is one too, and one in reach (of this share) against which
   // less than two thirds do (0.3 = 0.65 - 0.35).

@@ -166,6 +166,22 @@ TEST(RangeImage, GivesTheRangeItsSlack) {
   EXPECT_GT(compare(image, patch({-0.6F, -0.6F}, {0.6F, 0.6F}, 2.3F)).hidden, 100U);
 }
 
+TEST(RangeImage, TakesLessSlackForWhatContradictsInAnArea) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  const Points nearer = patch({-0.6F, -0.6F}, {0.6F, 0.6F}, 1.9F);  // within 0.14 m, not 0.07 m
+  SightTolerance tolerance = kTolerance;
+  const auto compared = [&] {
+    return image.compare({nearer}, Eigen::Isometry3d::Identity(), kPatch_m, tolerance);
+  };
+  EXPECT_EQ(compared().solid, 0U);
+  tolerance.solid = 0.5F;
+  const SightCounts counts = compared();
+  EXPECT_EQ(counts.crossed, 0U);
+  EXPECT_GT(counts.agree, 100U);
+  EXPECT_EQ(counts.solid, counts.agree);
+  EXPECT_EQ(counts.solid_crossed, counts.agree);
+}
+
 TEST(RangeImage, LetsSilhouettesDecideNothing) {
   // A post before a wall. The entry has both, half a cell aside: its edges must not count as
   // crossed or hidden.

@@ -31,11 +31,11 @@ TEST(ConfidenceOf, RisesWithWhatSpeaksForAPoseAndFallsWithWhatSpeaksAgainst) {
     other.*figure = value;
     return confidence_of(other, 0.7, 0.3);
   };
-  EXPECT_LT(less(&Evidence::explained, 0.8), base);
   EXPECT_LT(less(&Evidence::contrast, 0.1), base);
   EXPECT_LT(less(&Evidence::observability, 0.0), base);
   EXPECT_LT(less(&Evidence::agreeing, 2.0), base);
   EXPECT_LT(less(&Evidence::contradicted, 0.05), base);
+  EXPECT_LT(less(&Evidence::refuted, 0.02), base);
 }
 
 TEST(ConfidenceAlone, DoesNotLookAtRivals) {
@@ -63,7 +63,7 @@ TEST(ConfidenceOf, IsAProbabilityForAnyEvidence) {
   }
   Evidence nothing;
   nothing.contrast = 0.0;
-  nothing.crossed = nothing.contradicted = 0.5;
+  nothing.crossed = nothing.contradicted = nothing.refuted = 0.5;
   EXPECT_LT(confidence_of(nothing, 0.0, 1.0), 0.001);
   EXPECT_GT(confidence_of(convincing(), 0.9, 1.0), 0.9);
 }

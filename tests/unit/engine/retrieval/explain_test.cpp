@@ -179,8 +179,8 @@ TEST(ConfidenceTerms, PutTheCostliestFirst) {
   evidence.overlap = evidence.explained = evidence.coverage = evidence.observability = 1.0;
   evidence.agreeing = 200.0;
   EXPECT_EQ(confidence_terms(evidence, 1.0, 0.0).at(0).name, "margin");
-  evidence.explained = 0.1;
-  EXPECT_EQ(confidence_terms(evidence, 1.0, 1.0).at(0).name, "explained");
+  evidence.contradicted = 0.5;
+  EXPECT_EQ(confidence_terms(evidence, 1.0, 1.0).at(0).name, "contradicted");
 }
 
 }  // namespace
