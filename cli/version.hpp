@@ -6,7 +6,7 @@
 namespace landmarkdb::cli {
 
 // The contracts a build speaks. A test holds them against the store's and the protocol's own.
-inline constexpr int kDatabaseVersion = 3;
+inline constexpr int kDatabaseVersion = 4;
 inline constexpr int kProtocolVersion = 1;
 
 // "0.1.0"

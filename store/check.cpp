@@ -87,7 +87,7 @@ void check_version(const Database& database, const VersionRow& row, CheckReport&
                               ": what is listed of it disagrees with its manifest; `repair` "
                               "writes it anew");
   }
-  if (has_scene_index(database, row.segment_id) && !read_scene_index(database, row)) {
+  if (has_scene_index(database, row.segment_id) && !read_scene_index(database, row, true)) {
     report.findings.push_back(row.what() + ": its search index is damaged; `repair` makes it anew");
   }
   if (row.damage) {

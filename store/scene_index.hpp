@@ -17,9 +17,11 @@ namespace landmarkdb {
 
 bool has_scene_index(const sqlite::Database& database, std::int64_t segment_id);
 
-// What is stored for the version, if its digest says that it is of this very segment and whole.
+// What is stored for the version, if its digests say that it is of this very segment and whole.
+// Tails that are not wanted are neither read nor checked.
 std::optional<SceneIndexBlob> read_scene_index(const sqlite::Database& database,
-                                               const VersionRow& row);
+                                               const VersionRow& row,
+                                               bool with_tails);
 
 // The index of the segment's descriptors as `deriver` makes it; nothing without a maker, and for a
 // scene whose index would be past what one row may hold.

@@ -34,10 +34,10 @@ class StoredScene final : public SceneSource {
     return record;
   }
 
-  std::optional<SceneIndexBlob> index(const RunContext&) const override {
+  std::optional<SceneIndexBlob> index(bool with_tails, const RunContext&) const override {
     const std::unique_ptr<sqlite::Database> database = open();
     const sqlite::Transaction snapshot(*database, sqlite::Transaction::Kind::kRead);
-    return read_scene_index(*database, row_);
+    return read_scene_index(*database, row_, with_tails);
   }
 
  private:

@@ -148,8 +148,7 @@ std::string fault_of(const SceneRecord& record, SceneParts parts) {
     }
   }
   const std::size_t want_values = parts == SceneParts::kWhole ? set.size() * kShotLength : 0;
-  const std::size_t want_normals = parts == SceneParts::kKeypoints ? 0 : set.size();
-  if (set.normals.size() != want_normals || set.frames.size() != set.size() ||
+  if (set.normals.size() != set.size() || set.frames.size() != set.size() ||
       set.values.size() != want_values) {
     return "has " + count(set.size()) + " keypoints, " + count(set.normals.size()) +
            " keypoint normals, " + count(set.frames.size()) + " frames and " +
@@ -230,13 +229,12 @@ Segment encode_segment(const SceneRecord& record) {
 
 SceneRecord outline_of(const Manifest& manifest, std::string name, const std::string& what) {
   SceneRecord record = record_from(manifest, std::move(name));
-  const std::string fault = fault_of(record, SceneParts::kKeypoints);
+  const std::string fault = fault_of(record, SceneParts::kSurface);
   if (!fault.empty()) throw Error(ErrorCode::kDataLoss, what + " " + fault);
   return record;
 }
 
 bool is_part(std::string_view array, SceneParts parts) {
-  if (parts == SceneParts::kKeypoints) return array == "keypoints" || array == "keypoint_frames";
   return parts == SceneParts::kWhole || array != kDescriptors;
 }
 
@@ -248,13 +246,11 @@ SceneRecord decode_segment(Segment segment,
   SceneRecord record = record_from(segment.manifest, std::move(name));
   PreparedCloud& cloud = record.prepared;
   DescriptorSet& set = record.descriptors;
-  if (parts != SceneParts::kKeypoints) {
-    cloud.points = vectors_from(arrays.take("points", DType::kFloat32, 3));
-    cloud.normals = vectors_from(arrays.take("normals", DType::kFloat32, 3));
-    cloud.viewpoints = vectors_from(arrays.take("viewpoints", DType::kFloat32, 3));
-    cloud.viewpoint_index = indices_from(arrays.take("viewpoint_index", DType::kUint16, 0));
-    set.normals = vectors_from(arrays.take("keypoint_normals", DType::kFloat32, 3));
-  }
+  cloud.points = vectors_from(arrays.take("points", DType::kFloat32, 3));
+  cloud.normals = vectors_from(arrays.take("normals", DType::kFloat32, 3));
+  cloud.viewpoints = vectors_from(arrays.take("viewpoints", DType::kFloat32, 3));
+  cloud.viewpoint_index = indices_from(arrays.take("viewpoint_index", DType::kUint16, 0));
+  set.normals = vectors_from(arrays.take("keypoint_normals", DType::kFloat32, 3));
   set.keypoints = vectors_from(arrays.take("keypoints", DType::kFloat32, 3));
   set.frames = frames_from(arrays.take("keypoint_frames", DType::kFloat32, 4), what);
   if (parts == SceneParts::kWhole) {

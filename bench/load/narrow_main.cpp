@@ -45,9 +45,9 @@ int run(const std::string& db, const SiteOptions& site, std::size_t places, std:
   const auto catalog = Store::open_read_only(db).load_outlines(context);
   std::vector<std::shared_ptr<const Entry>> base;
   for (CatalogEntry stored : catalog->entries) {
-    stored.record = stored.source->load(SceneParts::kSurface, context);
-    const PlaceOutline outline = make_place_outline(stored.record->prepared);
-    base.push_back(std::make_shared<const Entry>(make_outline(std::move(stored), outline)));
+    PlaceOutline outline = make_place_outline(*stored.source->load(SceneParts::kSurface, context));
+    base.push_back(
+        std::make_shared<const Entry>(make_outline(std::move(stored), std::move(outline))));
   }
   EntryCache cache(std::move(base), 0);
   const std::vector<Level> levels = make_levels(Entries(cache), context, 1);

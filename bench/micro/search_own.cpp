@@ -45,13 +45,14 @@ class Coded : public SearchPeer {
     context.threads = threads_;
     const std::size_t rows = stored.size() / kShotLength;
     const std::size_t count = (rows + kRowsAPart - 1) / kRowsAPart;
-    codes_.resize(count);
+    tails_.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t begin = i * rows / count;
       const std::size_t end = (i + 1) * rows / count;
       const auto part = stored.subspan(begin * kShotLength, (end - begin) * kShotLength);
-      codes_[i] = make_codes(part, context);
-      parts_.push_back({part, &codes_[i]});
+      const DescriptorCodes codes = make_codes(part, context);
+      tails_[i] = tails_by_row(codes);
+      parts_.push_back({part, make_coded_part(codes, end - begin), tails_[i]});
     }
   }
   std::vector<int> efforts() const override { return {64, 32, 16, 8}; }
@@ -67,8 +68,8 @@ class Coded : public SearchPeer {
  private:
   int threads_;
   int effort_ = 0;
-  std::vector<DescriptorCodes> codes_;
-  std::vector<CodedPart> parts_;
+  std::vector<std::vector<std::int8_t>> tails_;
+  std::vector<IndexedPart> parts_;
   std::unique_ptr<DescriptorIndex> index_;
 };
 

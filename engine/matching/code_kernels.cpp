@@ -212,6 +212,11 @@ constexpr CodeKernels kVnni{vnni_scores, vnni_above, avx2_squared, avx2_project}
 
 }  // namespace
 
+void PackedCodes::reserve(std::size_t groups) {
+  bytes.reserve(groups * kGroupBytes);
+  bias.reserve(groups * kCodeGroup);
+}
+
 void PackedCodes::append(std::span<const std::int8_t> codes) {
   const std::size_t count = codes.size() / kCodeLength;
   const std::size_t first = groups();
@@ -222,12 +227,14 @@ void PackedCodes::append(std::span<const std::int8_t> codes) {
     const std::int8_t* code = codes.data() + i * kCodeLength;
     std::uint8_t* group = bytes.data() + (first + i / kCodeGroup) * kGroupBytes;
     std::int32_t squared = 0;
-    for (std::size_t j = 0; j < kCodeLength; ++j) {
-      squared += code[j] * code[j];
-      group[(j / 4 * kCodeGroup + i % kCodeGroup) * 4 + j % 4] =
-          static_cast<std::uint8_t>(code[j] + 128);
-    }
+    for (std::size_t j = 0; j < kCodeLength; ++j) squared += code[j] * code[j];
     bias[first * kCodeGroup + i] = -squared;
+    for (std::size_t quad = 0; quad < kQuads; ++quad) {
+      std::uint32_t four = 0;
+      std::memcpy(&four, code + 4 * quad, sizeof four);
+      four ^= 0x80808080U;  // each + 128
+      std::memcpy(group + (quad * kCodeGroup + i % kCodeGroup) * 4, &four, sizeof four);
+    }
   }
 }
 

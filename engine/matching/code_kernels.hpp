@@ -22,6 +22,7 @@ struct PackedCodes {
   static constexpr std::int32_t kNoCode = std::numeric_limits<std::int32_t>::min() / 2;
 
   std::size_t groups() const { return bias.size() / kCodeGroup; }
+  void reserve(std::size_t groups);
   // Begins a new group and appends rows of kCodeLength; fills up the last group.
   void append(std::span<const std::int8_t> codes);
 };

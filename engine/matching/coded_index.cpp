@@ -23,7 +23,7 @@ namespace landmarkdb {
 namespace {
 
 constexpr std::string_view kStage = "match";
-constexpr std::uint32_t kNoRow = DescriptorMatch::kNone;
+constexpr std::uint32_t kNoRow = CodedPart::kNoRow;
 
 // Queries that go over the lists together, so that a list is read once for all who want it.
 constexpr std::size_t kQueryBlock = 1024;
@@ -70,37 +70,33 @@ class CodedIndexMaker::Index : public CodedIndex {
  public:
   explicit Index(const CodedSearchOptions& options) : options_(options) {}
 
-  void reserve(std::size_t rows) {
-    const std::size_t places = rows + rows / 8;  // lists end in groups that are not full
-    codes_.bytes.reserve(places * kCodeLength);
-    codes_.bias.reserve(places);
-    row_of_.reserve(places);
-    if (options_.keeps_tails) tails_.reserve(rows * kCodeLength);
-  }
-
-  void add(const CodedPart& part) {
-    const bool coded_only = part.values.empty();
-    const std::size_t rows = coded_only ? part.codes->size() : part.values.size() / kShotLength;
-    if ((coded_only && rows > 0) || !options_.keeps_tails) compares_in_full_ = false;
-    const std::string fault = fault_of_codes(*part.codes, rows);
-    if (!fault.empty()) throw Error(ErrorCode::kInvalidArgument, "the index " + fault);
-    if (options_.keeps_tails && part.codes->tails.size() != rows * kCodeLength) {
+  void add(const IndexedPart& part) {
+    const CodedPart& codes = *part.codes;
+    if ((part.values.empty() && codes.rows > 0) || !options_.keeps_tails) {
+      compares_in_full_ = false;
+    }
+    if (!part.values.empty() && part.values.size() != codes.rows * kShotLength) {
+      throw Error(ErrorCode::kInvalidArgument,
+                  "the index has search codes of " + std::to_string(codes.rows) + " rows for " +
+                      std::to_string(part.values.size() / kShotLength) + " descriptors");
+    }
+    if (options_.keeps_tails && part.tails.size() != codes.rows * kCodeLength) {
       throw Error(ErrorCode::kInvalidArgument, "the index has search codes without their tails");
     }
-    if (rows >= kNoRow - size_) {
+    if (codes.rows >= kNoRow - size_) {
       throw Error(ErrorCode::kInvalidArgument, "stored descriptors are 2^32 - 1 or more");
     }
-    first_list_.push_back(list_start_.size());
-    add_lists(*part.codes);
-    if (options_.keeps_tails) add_tails(*part.codes);
+    first_list_.push_back(lists_.size());
+    add_lists(codes);
+    if (options_.keeps_tails) tails_.insert(tails_.end(), part.tails.begin(), part.tails.end());
     first_row_.push_back(size_);
     values_.push_back(part.values);
-    size_ += rows;
+    codes_.push_back(part.codes);
+    size_ += codes.rows;
   }
 
   void finish() {
-    first_list_.push_back(list_start_.size());
-    list_start_.push_back(codes_.groups());
+    first_list_.push_back(lists_.size());
     centres_.finish();
   }
 
@@ -162,32 +158,30 @@ class CodedIndexMaker::Index : public CodedIndex {
     std::span<const float> row(std::size_t i) const { return descriptor_row(rows, begin + i); }
   };
 
-  void add_lists(const DescriptorCodes& codes) {
-    for (std::size_t l = 0; l < codes.lists(); ++l) {
-      const std::size_t first = codes.list_start[l];
-      const std::size_t count = codes.list_start[l + 1] - first;
-      if (count == 0) continue;
-      list_start_.push_back(codes_.groups());
-      codes_.append(std::span(codes.codes).subspan(first * kCodeLength, count * kCodeLength));
-      for (std::size_t i = 0; i < count; ++i) {
-        row_of_.push_back(static_cast<std::uint32_t>(size_) + codes.rows[first + i]);
-      }
-      row_of_.resize(codes_.bias.size(), kNoRow);
-      most_in_list_ = std::max(most_in_list_, count + kCodeGroup);
-      centres_.add(std::span(codes.centres).subspan(l * kCodeLength, kCodeLength));
+  // One list of a part, as the kernels read it.
+  struct List {
+    const std::uint8_t* bytes;
+    const std::int32_t* bias;
+    const std::uint32_t* row_of;  // of the part
+    std::uint32_t groups;
+    std::uint32_t first_row;  // of the part
+  };
+
+  void add_lists(const CodedPart& part) {
+    for (std::size_t l = 0; l < part.lists(); ++l) {
+      const std::size_t group = part.list_start[l];
+      const std::uint32_t groups = part.list_start[l + 1] - part.list_start[l];
+      lists_.push_back({part.codes.bytes.data() + group * kCodeGroup * kCodeLength,
+                        part.codes.bias.data() + group * kCodeGroup,
+                        part.row_of.data() + group * kCodeGroup,
+                        groups,
+                        static_cast<std::uint32_t>(size_)});
+      most_in_list_ = std::max(most_in_list_, groups * kCodeGroup);
+      centres_.add(std::span(part.centres).subspan(l * kCodeLength, kCodeLength));
     }
   }
 
-  void add_tails(const DescriptorCodes& codes) {
-    tails_.resize((size_ + codes.size()) * kCodeLength);
-    for (std::size_t place = 0; place < codes.size(); ++place) {
-      std::copy_n(codes.tails.data() + place * kCodeLength,
-                  kCodeLength,
-                  tails_.data() + (size_ + codes.rows[place]) * kCodeLength);
-    }
-  }
-
-  std::size_t lists() const { return list_start_.size() - 1; }
+  std::size_t lists() const { return lists_.size(); }
 
   // `read` offers the rows that are looked at to the shortlists of a block of queries.
   template <typename Read>
@@ -280,21 +274,19 @@ class CodedIndexMaker::Index : public CodedIndex {
               std::size_t list,
               std::span<const std::uint32_t> queries,
               std::vector<Shortlist>& shortlists) {
-      const std::size_t group = index_.list_start_[list];
-      const std::uint32_t* rows = index_.row_of_.data() + group * kCodeGroup;
+      const List& here = index_.lists_[list];
       for (const std::uint32_t query : queries) {
         Shortlist& shortlist = shortlists[query];
-        const std::size_t count =
-            kernels_.above(block.code(query),
-                           index_.codes_.bytes.data() + group * kCodeGroup * kCodeLength,
-                           index_.codes_.bias.data() + group * kCodeGroup,
-                           index_.list_start_[list + 1] - group,
-                           shortlist.floor(),
-                           hits_.scores.data(),
-                           hits_.places.data());
+        const std::size_t count = kernels_.above(block.code(query),
+                                                 here.bytes,
+                                                 here.bias,
+                                                 here.groups,
+                                                 shortlist.floor(),
+                                                 hits_.scores.data(),
+                                                 hits_.places.data());
         for (std::size_t h = 0; h < count; ++h) {
-          const std::uint32_t row = rows[hits_.places[h]];
-          if (row != kNoRow) shortlist.offer(make_candidate(hits_.scores[h], row));
+          const std::uint32_t row = here.row_of[hits_.places[h]];
+          if (row != kNoRow) shortlist.offer(make_candidate(hits_.scores[h], here.first_row + row));
         }
       }
     }
@@ -375,35 +367,32 @@ class CodedIndexMaker::Index : public CodedIndex {
 
   CodedSearchOptions options_;
   bool compares_in_full_ = true;
-  PackedCodes codes_;                    // each list begins a group
-  std::vector<std::uint32_t> row_of_;    // by place in `codes_`; kNoRow: filling
-  std::vector<std::int8_t> tails_;       // by row
-  std::vector<std::size_t> list_start_;  // the first group of each list, and the number of groups
-  NearLists centres_;                    // of the lists
-  std::vector<std::size_t> first_list_;  // of each part, and the number of lists
-  std::vector<std::size_t> first_row_;   // of each part
+  std::vector<std::shared_ptr<const CodedPart>> codes_;  // of each part
+  std::vector<List> lists_;
+  std::vector<std::int8_t> tails_;              // by row
+  NearLists centres_;                           // of the lists
+  std::vector<std::size_t> first_list_;         // of each part, and the number of lists
+  std::vector<std::size_t> first_row_;          // of each part
   std::vector<std::span<const float>> values_;  // of each part
   std::size_t size_ = 0;
   std::size_t most_in_list_ = 0;
 };
 
-CodedIndexMaker::CodedIndexMaker(const CodedSearchOptions& options, std::size_t rows)
-    : index_(std::make_unique<Index>(options)) {
-  index_->reserve(rows);
-}
+CodedIndexMaker::CodedIndexMaker(const CodedSearchOptions& options)
+    : index_(std::make_unique<Index>(options)) {}
 CodedIndexMaker::~CodedIndexMaker() = default;
 
-void CodedIndexMaker::add(const CodedPart& part) { index_->add(part); }
+void CodedIndexMaker::add(const IndexedPart& part) { index_->add(part); }
 
 std::unique_ptr<CodedIndex> CodedIndexMaker::finish() {
   index_->finish();
   return std::move(index_);
 }
 
-std::unique_ptr<CodedIndex> make_coded_index(std::span<const CodedPart> parts,
+std::unique_ptr<CodedIndex> make_coded_index(std::span<const IndexedPart> parts,
                                              const CodedSearchOptions& options) {
   CodedIndexMaker maker(options);
-  for (const CodedPart& part : parts) maker.add(part);
+  for (const IndexedPart& part : parts) maker.add(part);
   return maker.finish();
 }
 

@@ -5,16 +5,17 @@
 #include <span>
 #include <vector>
 
+#include "engine/matching/coded_part.hpp"
 #include "engine/matching/descriptor_index.hpp"
-#include "engine/types/descriptor_codes.hpp"
 
 namespace landmarkdb {
 
-// The descriptors of one entry and their codes (make_codes.hpp).
-struct CodedPart {
+// What an index takes of one entry.
+struct IndexedPart {
   // N x kShotLength, unit length; must outlive the index. Empty: the codes alone are at hand.
   std::span<const float> values;
-  const DescriptorCodes* codes = nullptr;  // copied
+  std::shared_ptr<const CodedPart> codes;
+  std::span<const std::int8_t> tails;  // by row; copied where the index keeps tails
 };
 
 // How much of the stored descriptors a query looks at: the defaults find 98 % of the nearest ones
@@ -56,16 +57,16 @@ class CodedIndex : public DescriptorIndex {
   virtual bool has_tails() const = 0;
 };
 
-// Takes the parts one after another, so that they need not all be in memory beside the index.
+// Takes the parts one after another; their codes are shared, not copied.
 class CodedIndexMaker {
  public:
-  // Room is made for so many rows at once.
-  explicit CodedIndexMaker(const CodedSearchOptions& options, std::size_t rows = 0);
+  explicit CodedIndexMaker(const CodedSearchOptions& options);
   CodedIndexMaker(CodedIndexMaker&&) = delete;
   ~CodedIndexMaker();
 
-  // Throws Error{kInvalidArgument} for codes that do not fit their values.
-  void add(const CodedPart& part);
+  // Throws Error{kInvalidArgument} for codes that do not fit their values, or lack the tails that
+  // are kept.
+  void add(const IndexedPart& part);
   // Once, after the last part.
   std::unique_ptr<CodedIndex> finish();
 
@@ -75,7 +76,7 @@ class CodedIndexMaker {
 };
 
 // Of all of these parts. Throws what CodedIndexMaker::add does.
-std::unique_ptr<CodedIndex> make_coded_index(std::span<const CodedPart> parts,
+std::unique_ptr<CodedIndex> make_coded_index(std::span<const IndexedPart> parts,
                                              const CodedSearchOptions& options = {});
 
 }  // namespace landmarkdb

@@ -51,27 +51,25 @@ GridSize grid_size(std::span<const Eigen::Vector3f> points,
 
 SurfaceGrid make_wide_grid(const PreparedCloud& cloud, const RunContext& context) {
   const double cell_m = kWideCells * cloud.resolution_m;
-  const PlaceOutline thinned = thinned_outline(cloud, cell_m);
+  const ThinSurface thinned = thinned_surface(cloud, cell_m);
   return SurfaceGrid(thinned.points, thinned.normals, cell_m, kReachCells, context);
 }
 
-Entry make_outline(CatalogEntry stored, const PlaceOutline& outline) {
+Entry make_outline(CatalogEntry stored, PlaceOutline outline) {
   const double cell_m = stored.record->prepared.resolution_m;
-  if (stored.record->prepared.size() > 0) {
-    auto slim = std::make_shared<SceneRecord>(*stored.record);
-    slim->prepared.points = {};
-    slim->prepared.normals = {};
-    slim->prepared.viewpoint_index = {};
-    slim->descriptors.normals = {};
-    stored.record = std::move(slim);
+  if (!outline.keypoints.empty()) {
+    auto known = std::make_shared<SceneRecord>(*stored.record);
+    known->descriptors.keypoints = std::move(outline.keypoints);
+    stored.record = std::move(known);
   }
   return {.stored = std::move(stored),
           .grid = SurfaceGrid({}, {}, cell_m, 0),
-          .wide = outline_grid(outline, cell_m),
+          .wide = outline_grid(outline.surface, cell_m),
           .wide_sight = {},
           .planes = {},
           .test = {},
           .scanned = {},
+          .frames = std::move(outline.frames),
           .sight = {},
           .centre = Eigen::Vector3d::Zero(),
           .extent_m = 0.0};
@@ -103,6 +101,8 @@ Entry make_entry(CatalogEntry stored, const RunContext& context) {
       .test = is_object ? select_test_points(cloud.points, cloud.normals, {}, kTestPoints, kSeed)
                         : TestPoints{},
       .scanned = {},
+      .frames =
+          is_object ? std::vector<PackedRotation>{} : pack_rotations(record.descriptors.frames),
       .sight = sight_of(cloud, is_object),
       .centre = Eigen::Vector3d::Zero(),
       .extent_m = 0.0};

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "engine/base/run_context.hpp"
+#include "engine/geometry/packed_rotation.hpp"
 #include "engine/registration/plane_layout.hpp"
 #include "engine/registration/pose_score.hpp"
 #include "engine/registration/scanned_space.hpp"
@@ -27,6 +28,7 @@ struct Entry {
   std::vector<PlaneLayout> planes;                   // of places that have a frame of right angles
   TestPoints test;                                   // of the entry's own surface, for objects
   ScannedSpace scanned;                              // of places scanned from known viewpoints
+  std::vector<PackedRotation> frames;                // of places: the keypoints' local frames
   SightSurface sight;                                // of the whole surface, for free space
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean of the points
   double extent_m = 0.0;                             // twice the root mean square distance from it
@@ -53,8 +55,8 @@ SurfaceGrid make_wide_grid(const PreparedCloud& cloud, const RunContext& context
 Entry make_entry(CatalogEntry stored, const RunContext& context = {});
 
 // An entry of which no surface but this is in memory: its grid has the cells it will have, its
-// record no points, and its wide grid is that of the outline.
-Entry make_outline(CatalogEntry stored, const PlaceOutline& outline = {});
+// record no points, and its wide grid and keypoints are those of the outline.
+Entry make_outline(CatalogEntry stored, PlaceOutline outline = {});
 
 // Every n-th point, so that about `count` are left; points of a thinned cloud lie evenly on the
 // surface.

@@ -60,18 +60,16 @@ void add_outline(CatalogEntry stored,
                  bool with_tails,
                  const RunContext& context,
                  std::shared_ptr<const Entry>& entry,
-                 std::optional<DescriptorCodes>& codes) {
-  std::optional<SceneIndex> index =
-      scene_index_of(*stored.source, static_cast<std::size_t>(stored.keypoints), context);
-  stored.record =
-      stored.source->load(index ? SceneParts::kKeypoints : SceneParts::kSurface, context);
+                 std::optional<EntryCodes>& codes) {
+  const auto rows = static_cast<std::size_t>(stored.keypoints);
+  std::optional<SceneIndex> index = scene_index_of(*stored.source, rows, with_tails, context);
   if (index) {
-    codes = std::move(index->codes);
-    if (!with_tails) codes->tails = {};
+    codes = EntryCodes(index->codes, rows, with_tails);
   } else {
-    index.emplace().outline = make_place_outline(stored.record->prepared);
+    index.emplace().outline =
+        make_place_outline(*stored.source->load(SceneParts::kSurface, context));
   }
-  entry = std::make_shared<const Entry>(make_outline(std::move(stored), index->outline));
+  entry = std::make_shared<const Entry>(make_outline(std::move(stored), std::move(index->outline)));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "engine/base/run_context.hpp"
 #include "engine/retrieval/entry.hpp"
-#include "engine/types/descriptor_codes.hpp"
+#include "engine/retrieval/level.hpp"
 #include "engine/types/scene_record.hpp"
 
 namespace landmarkdb {
@@ -18,7 +18,7 @@ namespace landmarkdb {
 struct EntryBase {
   std::vector<std::shared_ptr<const Entry>> entries;  // as in the catalogue
   std::vector<std::string> damage;                    // of each; empty where it is sound
-  std::vector<std::optional<DescriptorCodes>> codes;  // of each, where they were read
+  std::vector<std::optional<EntryCodes>> codes;       // of each, where they were read
 };
 
 // Reads it, side by side. Throws what reading throws but for damage, and what `context` does.

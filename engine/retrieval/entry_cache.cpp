@@ -30,7 +30,7 @@ std::size_t memory_bytes(const Entry& entry) {
          bytes_of(set.keypoints) + bytes_of(set.normals) + bytes_of(set.frames) +
          bytes_of(set.values) + entry.grid.memory_bytes() + entry.wide.memory_bytes() +
          entry.wide_sight.memory_bytes() + entry.sight.memory_bytes() +
-         entry.scanned.memory_bytes();
+         entry.scanned.memory_bytes() + bytes_of(entry.frames);
 }
 
 EntryCache::EntryCache(std::vector<std::shared_ptr<const Entry>> base,

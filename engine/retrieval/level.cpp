@@ -44,10 +44,13 @@ DescriptorCodes blank_codes(std::size_t rows) {
 }
 
 // In lists of what is alike, or, to be scanned, in order.
-DescriptorCodes codes_of(const Entry& entry, bool scanned, const RunContext& context) {
+DescriptorCodes codes_of(const Entry& entry,
+                         bool scanned,
+                         bool with_tails,
+                         const RunContext& context) {
   const std::size_t rows = rows_of(entry);
   if (entry.stored.source != nullptr) {
-    std::optional<SceneIndex> stored = scene_index_of(*entry.stored.source, rows, context);
+    auto stored = scene_index_of(*entry.stored.source, rows, with_tails, context);
     if (stored) return std::move(stored->codes);
   }
   std::shared_ptr<const SceneRecord> held;
@@ -56,17 +59,16 @@ DescriptorCodes codes_of(const Entry& entry, bool scanned, const RunContext& con
   return scanned ? make_codes_in_order(values, context) : make_codes(values, context);
 }
 
-// Codes are made or read side by side, each entry's by one thread, and a few at a time: they are in
-// memory twice only for as long as they are added.
+// Codes are made or read side by side, each entry's by one thread, and a few at a time: tails are
+// in memory twice only for as long as they are added.
 std::unique_ptr<CodedIndex> make_index_of_codes(const Entries& entries,
                                                 std::span<const std::size_t> chosen,
-                                                std::size_t rows,
                                                 bool scanned,
                                                 const CodedSearchOptions& options,
                                                 const CodesAtHand& at_hand,
                                                 const RunContext& context) {
   constexpr std::size_t kAtATime = 64;
-  CodedIndexMaker maker(options, rows);
+  CodedIndexMaker maker(options);
   RunContext alone = context;
   if (chosen.size() > 1) {
     alone.threads = 1;
@@ -74,13 +76,16 @@ std::unique_ptr<CodedIndex> make_index_of_codes(const Entries& entries,
   }
   for (std::size_t first = 0; first < chosen.size(); first += kAtATime) {
     context.report("index", first, chosen.size());
-    std::vector<DescriptorCodes> codes(std::min(kAtATime, chosen.size() - first));
+    std::vector<std::optional<EntryCodes>> codes(std::min(kAtATime, chosen.size() - first));
     parallel_each(codes.size(), context.threads, [&](std::size_t i) {
-      const std::size_t entry = chosen[first + i];
-      std::optional<DescriptorCodes> given = at_hand ? at_hand(entry) : std::nullopt;
-      codes[i] = given ? *std::move(given) : codes_of(entries[entry], scanned, alone);
+      const Entry& entry = entries[chosen[first + i]];
+      if (at_hand) codes[i] = at_hand(chosen[first + i]);
+      if (codes[i]) return;
+      codes[i].emplace(codes_of(entry, scanned, options.keeps_tails, alone),
+                       rows_of(entry),
+                       options.keeps_tails);
     });
-    for (const DescriptorCodes& one : codes) maker.add({{}, &one});
+    for (const std::optional<EntryCodes>& one : codes) maker.add({{}, one->part, one->tails});
   }
   return maker.finish();
 }
@@ -91,6 +96,11 @@ CodedSearchOptions options_for(const Level& level) {
 }
 
 }  // namespace
+
+EntryCodes::EntryCodes(const DescriptorCodes& codes, std::size_t rows, bool with_tails)
+    : part(make_coded_part(codes, rows)) {
+  if (with_tails) tails = tails_by_row(codes);
+}
 
 std::size_t Level::entry_of_row(std::size_t row) const {
   const auto above = std::upper_bound(first_row.begin(), first_row.end(), row);
@@ -142,8 +152,8 @@ Level make_level(const Entries& entries,
     level.first_row.push_back(level.first_row.back() + rows_of(entries[entry]));
   }
   level.scanned = level.rows() <= most_scanned_rows;
-  level.index = make_index_of_codes(
-      entries, chosen, level.rows(), level.scanned, options_for(level), at_hand, context);
+  level.index =
+      make_index_of_codes(entries, chosen, level.scanned, options_for(level), at_hand, context);
   return level;
 }
 

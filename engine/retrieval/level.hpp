@@ -45,9 +45,18 @@ inline constexpr std::size_t kAllPlaces = 16;
 inline constexpr std::size_t kMostRowsWithTails = std::size_t{1} << 20U;
 bool keeps_tails(std::size_t places, std::size_t rows);
 
+// The codes of an entry as its level's index takes them.
+struct EntryCodes {
+  // Throws what make_coded_part does.
+  EntryCodes(const DescriptorCodes& codes, std::size_t rows, bool with_tails);
+
+  std::shared_ptr<const CodedPart> part;
+  std::vector<std::int8_t> tails;  // by row; empty: not wanted
+};
+
 // Gives away the codes of an entry that were read with something else of it; nothing where they
 // were not.
-using CodesAtHand = std::function<std::optional<DescriptorCodes>(std::size_t entry)>;
+using CodesAtHand = std::function<std::optional<EntryCodes>(std::size_t entry)>;
 
 // How many descriptors the entry has, whether they are in memory or not.
 std::size_t rows_of(const Entry& entry);

@@ -65,15 +65,29 @@ std::vector<Tried> best_proposals(const SurfaceGrid& wide,
   return tried;
 }
 
+// The keypoints that the pairs name, in the order of the pairs.
+DescriptorSet targets_of(const Entry& entry, std::span<const Correspondence> pairs) {
+  DescriptorSet targets;
+  targets.keypoints.reserve(pairs.size());
+  targets.frames.reserve(pairs.size());
+  for (const Correspondence& pair : pairs) {
+    targets.keypoints.push_back(entry.record().descriptors.keypoints[pair.target]);
+    targets.frames.push_back(unpack_rotation(entry.frames[pair.target]));
+  }
+  return targets;
+}
+
 double score_of(const SearchInput& input,
                 const Entry& entry,
                 const TestPoints& test,
                 const DescriptorSet& query,
-                std::span<const Correspondence> pairs,
+                std::vector<Correspondence> pairs,
                 std::size_t most_tried) {
+  const DescriptorSet targets = targets_of(entry, pairs);
+  for (std::uint32_t i = 0; i < pairs.size(); ++i) pairs[i].target = i;
   const std::vector<Proposal> proposals =
       propose_from_frames(pairs,
-                          entry.record().descriptors,
+                          targets,
                           query,
                           gravity_of(input.options, entry.record()),
                           prior_of(input, entry.record()));
@@ -122,11 +136,11 @@ std::vector<PlaceScore> place_scores(const SearchInput& input,
   std::vector<PlaceScore> scores(parts.size());
   parallel_each(scores.size(), input.context.threads, [&](std::size_t i) {
     input.context.check("pose");
-    const std::vector<Correspondence>& own = pairs[parts[i]];
+    std::vector<Correspondence>& own = pairs[parts[i]];
     scores[i].entry = level.entries[parts[i]];
     if (own.empty()) return;
-    scores[i].score =
-        score_of(input, input.entries[scores[i].entry], view.test, query, own, most_tried);
+    const Entry& entry = input.entries[scores[i].entry];
+    scores[i].score = score_of(input, entry, view.test, query, std::move(own), most_tried);
   });
   set_standings(scores);
   return scores;

@@ -11,21 +11,23 @@ constexpr int kReachCells = 1;
 
 }  // namespace
 
-PlaceOutline thinned_outline(const PreparedCloud& cloud, double cell_m) {
-  PlaceOutline outline;
+ThinSurface thinned_surface(const PreparedCloud& cloud, double cell_m) {
+  ThinSurface surface;
   for (const std::uint32_t i : uniform_keypoints(cloud, cell_m).index) {
-    outline.points.push_back(cloud.points[i]);
-    outline.normals.push_back(cloud.normals[i]);
+    surface.points.push_back(cloud.points[i]);
+    surface.normals.push_back(cloud.normals[i]);
   }
-  return outline;
+  return surface;
 }
 
-PlaceOutline make_place_outline(const PreparedCloud& cloud) {
-  return thinned_outline(cloud, kCells * cloud.resolution_m);
+PlaceOutline make_place_outline(const SceneRecord& record) {
+  return {thinned_surface(record.prepared, kCells * record.prepared.resolution_m),
+          record.descriptors.keypoints,
+          pack_rotations(record.descriptors.frames)};
 }
 
-SurfaceGrid outline_grid(const PlaceOutline& outline, double voxel_m) {
-  return SurfaceGrid(outline.points, outline.normals, kCells * voxel_m, kReachCells);
+SurfaceGrid outline_grid(const ThinSurface& surface, double voxel_m) {
+  return SurfaceGrid(surface.points, surface.normals, kCells * voxel_m, kReachCells);
 }
 
 }  // namespace landmarkdb

@@ -14,8 +14,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie");
 static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
+static_assert(sizeof(PackedRotation) == 4 * sizeof(std::int16_t));
 
-constexpr std::int64_t kVersion = 2;
+constexpr std::int64_t kVersion = 3;
 constexpr const char* kParams = "components 128, rows a list 64, rounds 6, outline of 4 voxels";
 
 template <typename Value>
@@ -49,47 +50,61 @@ SceneIndexBlob scene_index_format() { return {kVersion, kParams, {}}; }
 SceneIndexBlob make_scene_index(const SceneRecord& record, const RunContext& context) {
   const DescriptorCodes codes = make_codes(record.descriptors.values, context);
   const PlaceOutline outline =
-      record.kind == EntryKind::kPlace ? make_place_outline(record.prepared) : PlaceOutline{};
+      record.kind == EntryKind::kPlace ? make_place_outline(record) : PlaceOutline{};
   SceneIndexBlob blob = scene_index_format();
-  const std::vector<std::uint32_t> counts{static_cast<std::uint32_t>(codes.size()),
-                                          static_cast<std::uint32_t>(codes.lists()),
-                                          static_cast<std::uint32_t>(outline.points.size())};
+  const std::vector<std::uint32_t> counts{
+      static_cast<std::uint32_t>(codes.size()),
+      static_cast<std::uint32_t>(codes.lists()),
+      static_cast<std::uint32_t>(outline.keypoints.size()),
+      static_cast<std::uint32_t>(outline.surface.points.size())};
   append(counts, blob.codes);
   append(codes.list_start, blob.codes);
   append(codes.rows, blob.codes);
   append(codes.centres, blob.codes);
   append(codes.codes, blob.codes);
-  append(codes.tails, blob.codes);
-  append(outline.points, blob.codes);
-  append(outline.normals, blob.codes);
+  append(outline.keypoints, blob.codes);
+  append(outline.frames, blob.codes);
+  append(outline.surface.points, blob.codes);
+  append(outline.surface.normals, blob.codes);
+  append(codes.tails, blob.tails);
   return blob;
 }
 
-std::optional<SceneIndex> scene_index_from(const SceneIndexBlob& blob, std::size_t rows) {
+std::optional<SceneIndex> scene_index_from(const SceneIndexBlob& blob,
+                                           std::size_t rows,
+                                           bool with_tails) {
   if (!blob.is_made_like(scene_index_format())) return std::nullopt;
   std::span<const std::byte> bytes = blob.codes;
+  std::span<const std::byte> tail_bytes = blob.tails;
   std::vector<std::uint32_t> counts;
   SceneIndex index;
   DescriptorCodes& codes = index.codes;
-  if (!take(bytes, 3, counts) || counts[0] != rows) return std::nullopt;
+  PlaceOutline& outline = index.outline;
+  if (!take(bytes, 4, counts) || counts[0] != rows) return std::nullopt;
   const std::size_t lists = counts[1];
-  const bool whole = take(bytes, rows == 0 ? 0 : lists + 1, codes.list_start) &&
-                     take(bytes, rows, codes.rows) &&
-                     take(bytes, lists * kCodeLength, codes.centres) &&
-                     take(bytes, rows * kCodeLength, codes.codes) &&
-                     take(bytes, rows * kCodeLength, codes.tails) &&
-                     take(bytes, counts[2], index.outline.points) &&
-                     take(bytes, counts[2], index.outline.normals) && bytes.empty();
+  const std::size_t keypoints = counts[2];
+  if (keypoints != 0 && keypoints != rows) return std::nullopt;
+  const bool whole =
+      take(bytes, rows == 0 ? 0 : lists + 1, codes.list_start) && take(bytes, rows, codes.rows) &&
+      take(bytes, lists * kCodeLength, codes.centres) &&
+      take(bytes, rows * kCodeLength, codes.codes) && take(bytes, keypoints, outline.keypoints) &&
+      take(bytes, keypoints, outline.frames) && take(bytes, counts[3], outline.surface.points) &&
+      take(bytes, counts[3], outline.surface.normals) && bytes.empty();
   if (!whole || !fault_of_codes(codes, rows).empty()) return std::nullopt;
-  if (!all_finite(index.outline.points) || !all_finite(index.outline.normals)) return std::nullopt;
-  return index;
+  if (with_tails && !(take(tail_bytes, rows * kCodeLength, codes.tails) && tail_bytes.empty())) {
+    return std::nullopt;
+  }
+  const bool finite = all_finite(outline.keypoints) && all_finite(outline.surface.points) &&
+                      all_finite(outline.surface.normals);
+  return finite ? std::optional(std::move(index)) : std::nullopt;
 }
 
 std::optional<SceneIndex> scene_index_of(const SceneSource& source,
                                          std::size_t rows,
+                                         bool with_tails,
                                          const RunContext& context) {
-  const std::optional<SceneIndexBlob> stored = source.index(context);
-  return stored ? scene_index_from(*stored, rows) : std::nullopt;
+  const std::optional<SceneIndexBlob> stored = source.index(with_tails, context);
+  return stored ? scene_index_from(*stored, rows, with_tails) : std::nullopt;
 }
 
 }  // namespace landmarkdb

@@ -18,18 +18,18 @@ struct SceneRecord;
 struct SceneIndexBlob {
   std::int64_t version = 0;        // of the layout
   std::string params{};            // what they were made with, free text
-  std::vector<std::byte> codes{};  // and the rest
+  std::vector<std::byte> codes{};  // what it takes to know the scene among many
+  std::vector<std::byte> tails{};  // and what it takes to compare descriptors more closely
 
   bool is_made_like(const SceneIndexBlob& other) const {
     return version == other.version && params == other.params;
   }
 };
 
-// How much of a scene is wanted in memory, each more than the one before.
+// How much of a scene is wanted in memory.
 enum class SceneParts {
-  kKeypoints,  // keypoints with their frames
-  kSurface,    // points too, and the keypoints' normals
-  kWhole,      // descriptor values too
+  kSurface,  // all but descriptor values
+  kWhole,
 };
 
 // Where a scene that is not in memory is read from. Thread-safe.
@@ -41,8 +41,9 @@ class SceneSource {
   // that is damaged or not there any more, Error{kUnavailable} where the file cannot be read now.
   virtual std::shared_ptr<const SceneRecord> load(SceneParts parts,
                                                   const RunContext& context) const = 0;
-  // What is stored with it, its digest checked; nothing where there is none that is sound.
-  virtual std::optional<SceneIndexBlob> index(const RunContext& context) const = 0;
+  // What is stored with it, its digests checked; nothing where there is none that is sound. Without
+  // tails they are not read.
+  virtual std::optional<SceneIndexBlob> index(bool with_tails, const RunContext& context) const = 0;
 };
 
 }  // namespace landmarkdb

@@ -76,7 +76,7 @@ TEST(Migrations, AFileThatVersion1WroteKeepsItsSceneAndTakesModels) {
   EXPECT_EQ(error_of([&] { Store::open_read_only(path); }).code, ErrorCode::kUnimplemented);
   const std::string before = testing::read_file(path);
   const MigrationReport plan = Store::migrate(path, true, {});
-  EXPECT_THAT(plan.steps, ElementsAre("0002_mono", "0003_scene_index"));
+  EXPECT_THAT(plan.steps, ElementsAre("0002_mono", "0003_scene_index", "0004_scene_index_parts"));
   EXPECT_EQ(testing::read_file(path), before);
 
   const MigrationReport done = Store::migrate(path, false, {});

@@ -15,9 +15,9 @@ using ::testing::SizeIs;
 
 SceneIndexBlob index_of(const SceneRecord& record, const RunContext&) {
   const std::size_t numbers = record.descriptors.values.size() + record.prepared.size();
-  return {3, "a maker", {std::byte{7}, static_cast<std::byte>(numbers % 251)}};
+  return {3, "a maker", {std::byte{7}, static_cast<std::byte>(numbers % 251)}, {std::byte{8}}};
 }
-const SceneDeriver kDeriver{index_of, {3, "a maker", {}}};
+const SceneDeriver kDeriver{index_of, {3, "a maker", {}, {}}};
 
 class SceneIndexTest : public ::testing::Test {
  protected:
@@ -30,8 +30,8 @@ class SceneIndexTest : public ::testing::Test {
         .execute(sql);
   }
   std::string store_path() const { return folder.file("x.db"); }
-  std::optional<SceneIndexBlob> index_of_scene(std::size_t i) const {
-    return store.load_outlines({})->entries.at(i).source->index({});
+  std::optional<SceneIndexBlob> index_of_scene(std::size_t i, bool with_tails = true) const {
+    return store.load_outlines({})->entries.at(i).source->index(with_tails, {});
   }
 
   testing::TempFolder folder;
@@ -43,12 +43,16 @@ TEST_F(SceneIndexTest, IsStoredWithTheVersionAndReadOnDemand) {
   ASSERT_TRUE(index);
   EXPECT_TRUE(index->is_made_like(kDeriver.index_format));
   EXPECT_THAT(index->codes, SizeIs(2));
+  EXPECT_THAT(index->tails, SizeIs(1));
+  EXPECT_EQ(index_of_scene(0, false)->codes, index->codes);
+  EXPECT_THAT(index_of_scene(0, false)->tails, IsEmpty());
   EXPECT_FALSE(index_of_scene(1));
   EXPECT_TRUE(store.check({}).ok());
 }
 
 TEST_F(SceneIndexTest, ADamagedOneIsNotReadAndMadeAnew) {
   for (const char* sql : {"UPDATE scene_index SET codes = x'0102'",
+                          "UPDATE scene_index SET tails = x'01'",
                           "UPDATE scene_index SET version = 4",
                           "UPDATE scene_index SET params = 'another'",
                           "UPDATE scene_index SET segment_id = 2 WHERE segment_id = 1"}) {
@@ -65,6 +69,12 @@ TEST_F(SceneIndexTest, ADamagedOneIsNotReadAndMadeAnew) {
   EXPECT_THAT(store.repair({}).repaired, Each(HasSubstr("search index was dropped")));
   EXPECT_THAT(store.optimize({}, {}, kDeriver).renewed, SizeIs(2));
   EXPECT_THAT(store.optimize({}, {}, kDeriver).renewed, IsEmpty());
+}
+
+TEST_F(SceneIndexTest, DamagedTailsHarmNobodyWhoDoesNotReadThem) {
+  execute("UPDATE scene_index SET tails = x'01'");
+  EXPECT_TRUE(index_of_scene(0, false));
+  EXPECT_FALSE(index_of_scene(0, true));
 }
 
 TEST_F(SceneIndexTest, GoesWithItsScene) {

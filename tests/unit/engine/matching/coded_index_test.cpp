@@ -54,18 +54,19 @@ std::vector<float> surface_like_descriptors(std::size_t rows,
 
 // Parts of the given sizes, cut from `values`.
 struct Parts {
-  std::vector<DescriptorCodes> codes;
-  std::vector<CodedPart> parts;
+  std::vector<std::vector<std::int8_t>> tails;
+  std::vector<IndexedPart> parts;
 };
 
 Parts parts_of(const std::vector<float>& values, const std::vector<std::size_t>& sizes) {
   Parts result;
   std::size_t first = 0;
-  result.codes.reserve(sizes.size());
+  result.tails.reserve(sizes.size());
   for (const std::size_t size : sizes) {
     const auto part = std::span(values).subspan(first * kShotLength, size * kShotLength);
-    result.codes.push_back(make_codes(part, {}));
-    result.parts.push_back({part, &result.codes.back()});
+    const DescriptorCodes codes = make_codes(part, {});
+    result.tails.push_back(tails_by_row(codes));
+    result.parts.push_back({part, make_coded_part(codes, size), result.tails.back()});
     first += size;
   }
   return result;
@@ -119,8 +120,8 @@ TEST(CodedIndex, SearchesSomePartsAsAnIndexOfThemAloneThatReadsAllDoes) {
   const std::vector<float> queries = surface_like_descriptors(200, 100, 9);
   constexpr std::size_t kNeighbours = 7;
   Parts all = parts_of(stored, {800, 700, 0, 900, 600});
-  for (CodedPart& part : all.parts) part.values = {};  // by codes alone
-  const std::vector<CodedPart> some{all.parts[1], all.parts[3]};
+  for (IndexedPart& part : all.parts) part.values = {};  // by codes alone
+  const std::vector<IndexedPart> some{all.parts[1], all.parts[3]};
   const auto want = search(
       *make_coded_index(some, {.list_share = 1.0, .refined = 32, .refined_a_neighbour = 2.0}),
       queries,
@@ -144,9 +145,9 @@ TEST(CodedIndex, FindsMostWithoutTails) {
   const std::vector<float> queries(stored.end() - 150 * kShotLength, stored.end());
   stored.resize(6000 * kShotLength);
   Parts parts = parts_of(stored, {2500, 3500});
-  for (std::size_t i = 0; i < parts.parts.size(); ++i) {
-    parts.parts[i].values = {};
-    parts.codes[i].tails = {};
+  for (IndexedPart& part : parts.parts) {
+    part.values = {};
+    part.tails = {};
   }
   EXPECT_THROW(make_coded_index(parts.parts), Error);
   const auto index = make_coded_index(parts.parts, {.keeps_tails = false});
@@ -212,7 +213,7 @@ TEST(CodedIndex, FillsUpWithNoMatchWhereItHoldsFewerThanK) {
 TEST(CodedIndex, RefusesCodesThatDoNotFitAndQueriesThatAreNone) {
   const std::vector<float> stored = random_descriptors(100, 3, 7);
   Parts parts = parts_of(stored, {100});
-  parts.codes[0].rows[7] = 99'999;
+  parts.parts[0].values = parts.parts[0].values.first(99 * kShotLength);
   EXPECT_THROW(make_coded_index(parts.parts), Error);
   const Parts good = parts_of(stored, {100});
   EXPECT_THROW(search(*make_coded_index(good.parts), {1.0F}, 1), Error);

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "engine/base/random.hpp"
@@ -26,7 +27,11 @@ SceneRecord record_of(std::size_t rows, EntryKind kind = EntryKind::kPlace) {
     record.prepared.normals.push_back(Eigen::Vector3f::UnitZ());
   }
   record.descriptors.values = testing::random_descriptors(rows, 4, 1);
-  record.descriptors.keypoints.resize(rows, Eigen::Vector3f::Zero());
+  for (std::size_t i = 0; i < rows; ++i) {
+    record.descriptors.keypoints.push_back(record.prepared.points[i]);
+    const Eigen::AngleAxisf turn(0.01F * static_cast<float>(i), Eigen::Vector3f::UnitX());
+    record.descriptors.frames.push_back(turn.toRotationMatrix());
+  }
   return record;
 }
 
@@ -34,51 +39,67 @@ TEST(SceneIndex, GivesCodesAndOutlineBack) {
   for (const std::size_t rows : {std::size_t{0}, kRows}) {
     const SceneRecord record = record_of(rows);
     const DescriptorCodes codes = make_codes(record.descriptors.values, {});
-    const PlaceOutline outline = make_place_outline(record.prepared);
-    const std::optional<SceneIndex> read = scene_index_from(make_scene_index(record, {}), rows);
+    const PlaceOutline outline = make_place_outline(record);
+    const std::optional<SceneIndex> read =
+        scene_index_from(make_scene_index(record, {}), rows, true);
     ASSERT_TRUE(read) << rows;
     EXPECT_EQ(read->codes.centres, codes.centres);
     EXPECT_EQ(read->codes.list_start, codes.list_start);
     EXPECT_EQ(read->codes.rows, codes.rows);
     EXPECT_EQ(read->codes.codes, codes.codes);
     EXPECT_EQ(read->codes.tails, codes.tails);
-    EXPECT_EQ(read->outline.points, outline.points);
-    EXPECT_EQ(read->outline.normals, outline.normals);
-    EXPECT_GT(outline.points.size(), kSurface / 20);
-    EXPECT_LT(outline.points.size(), kSurface / 2);
+    EXPECT_EQ(read->outline.keypoints, record.descriptors.keypoints);
+    EXPECT_EQ(read->outline.frames, outline.frames);
+    EXPECT_EQ(read->outline.surface.points, outline.surface.points);
+    EXPECT_EQ(read->outline.surface.normals, outline.surface.normals);
+    EXPECT_GT(outline.surface.points.size(), kSurface / 20);
+    EXPECT_LT(outline.surface.points.size(), kSurface / 2);
   }
 }
 
 TEST(SceneIndex, OfAnObjectHasNoOutline) {
   const SceneRecord record = record_of(kRows, EntryKind::kObject);
-  const std::optional<SceneIndex> read = scene_index_from(make_scene_index(record, {}), kRows);
+  const std::optional<SceneIndex> read =
+      scene_index_from(make_scene_index(record, {}), kRows, true);
   ASSERT_TRUE(read);
-  EXPECT_TRUE(read->outline.points.empty());
+  EXPECT_TRUE(read->outline.surface.points.empty());
+  EXPECT_TRUE(read->outline.keypoints.empty());
   EXPECT_EQ(read->codes.size(), kRows);
 }
 
 TEST(SceneIndex, IsNothingWhenItDoesNotFit) {
   const SceneIndexBlob good = make_scene_index(record_of(kRows), {});
-  EXPECT_FALSE(scene_index_from(good, kRows - 1));
+  EXPECT_FALSE(scene_index_from(good, kRows - 1, true));
   SceneIndexBlob other = good;
   other.version = 1;
-  EXPECT_FALSE(scene_index_from(other, kRows));
+  EXPECT_FALSE(scene_index_from(other, kRows, true));
   other = good;
   other.params += "!";
-  EXPECT_FALSE(scene_index_from(other, kRows));
+  EXPECT_FALSE(scene_index_from(other, kRows, true));
   for (std::size_t cut = 0; cut < good.codes.size(); cut += 997) {
     other = good;
     other.codes.resize(cut);
-    EXPECT_FALSE(scene_index_from(other, kRows)) << cut;
+    EXPECT_FALSE(scene_index_from(other, kRows, true)) << cut;
   }
   other = good;
   other.codes.push_back({});
-  EXPECT_FALSE(scene_index_from(other, kRows));
-  for (const std::size_t count : {4U, 8U}) {  // four billion lists, or points
+  EXPECT_FALSE(scene_index_from(other, kRows, true));
+  for (const std::size_t count : {4U, 8U, 12U}) {  // four billion lists, keypoints or points
     other = good;
     for (std::size_t i = count; i < count + 4; ++i) other.codes[i] = std::byte{255};
-    EXPECT_FALSE(scene_index_from(other, kRows));
+    EXPECT_FALSE(scene_index_from(other, kRows, true));
   }
+}
+
+TEST(SceneIndex, NeedsTailsOnlyWhereTheyAreWanted) {
+  SceneIndexBlob blob = make_scene_index(record_of(kRows), {});
+  blob.tails.pop_back();
+  EXPECT_FALSE(scene_index_from(blob, kRows, true));
+  blob.tails.clear();
+  EXPECT_FALSE(scene_index_from(blob, kRows, true));
+  const std::optional<SceneIndex> read = scene_index_from(blob, kRows, false);
+  ASSERT_TRUE(read);
+  EXPECT_TRUE(read->codes.tails.empty());
 }
 
 TEST(SceneIndex, IsNothingWithANumberThatIsNone) {
@@ -86,7 +107,7 @@ TEST(SceneIndex, IsNothingWithANumberThatIsNone) {
   for (std::size_t i = blob.codes.size() - 4; i < blob.codes.size(); ++i) {
     blob.codes[i] = std::byte{255};
   }
-  EXPECT_FALSE(scene_index_from(blob, kRows));
+  EXPECT_FALSE(scene_index_from(blob, kRows, true));
 }
 
 }  // namespace

@@ -23,7 +23,11 @@ class SceneShelf final : public SceneSource {
     part->descriptors.values.clear();
     return part;
   }
-  std::optional<SceneIndexBlob> index(const RunContext&) const override { return stored_index; }
+  std::optional<SceneIndexBlob> index(bool with_tails, const RunContext&) const override {
+    std::optional<SceneIndexBlob> read = stored_index;
+    if (read && !with_tails) read->tails.clear();
+    return read;
+  }
 
   mutable std::atomic<int> loads{0};
   std::atomic<bool> damaged{false};
