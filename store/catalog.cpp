@@ -32,8 +32,25 @@ std::uint64_t rows_of(const Manifest& manifest, std::string_view array) {
   return 0;
 }
 
+// Memory is taken by what a manifest says before its arrays are read.
+void require_room(const Database& database, const Manifest& manifest, const std::string& what) {
+  const auto pages = static_cast<std::uint64_t>(database.integer("PRAGMA page_count"));
+  const std::uint64_t room =
+      pages * static_cast<std::uint64_t>(database.integer("PRAGMA page_size"));
+  std::uint64_t left = room;
+  for (const ArrayInfo& info : manifest.arrays) {
+    if (info.bytes > left) {
+      throw Error(ErrorCode::kDataLoss,
+                  what + ": its manifest says more bytes than the database of " +
+                      std::to_string(room) + " bytes holds");
+    }
+    left -= info.bytes;
+  }
+}
+
 void fill_outline(const Database& database, const VersionRow& row, CatalogEntry& entry) {
   const Manifest manifest = read_manifest(database, row.segment_id, row.what());
+  require_room(database, manifest, row.what());
   entry.record = std::make_shared<const SceneRecord>(outline_of(manifest, row.scene, row.what()));
   entry.points = rows_of(manifest, "points");
   entry.keypoints = rows_of(manifest, "keypoints");

@@ -12,7 +12,8 @@ namespace {
 using sqlite::Database;
 using sqlite::Statement;
 
-// SQLite holds no row past 1e9 bytes; a scene of four million keypoints is searched without.
+// SQLite holds no row past 1e9 bytes; a scene of more than three million keypoints is searched
+// without.
 constexpr std::size_t kMostBytes = std::size_t{512} << 20U;
 
 // Of a segment's index, one of its two parts.

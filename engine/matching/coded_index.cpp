@@ -1,6 +1,7 @@
 #include "engine/matching/coded_index.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <functional>
 #include <numeric>
 #include <string>
@@ -68,9 +69,12 @@ Effort effort_of(const CodedSearchOptions& options, std::size_t k) {
 
 class CodedIndexMaker::Index : public CodedIndex {
  public:
-  explicit Index(const CodedSearchOptions& options) : options_(options) {}
+  Index(const CodedSearchOptions& options, std::size_t rows) : options_(options) {
+    if (options_.keeps_tails) tails_.reserve(rows * kCodeLength);
+  }
 
   void add(const IndexedPart& part) {
+    assert(part.codes != nullptr && "a part has codes");
     const CodedPart& codes = *part.codes;
     if ((part.values.empty() && codes.rows > 0) || !options_.keeps_tails) {
       compares_in_full_ = false;
@@ -367,7 +371,7 @@ class CodedIndexMaker::Index : public CodedIndex {
 
   CodedSearchOptions options_;
   bool compares_in_full_ = true;
-  std::vector<std::shared_ptr<const CodedPart>> codes_;  // of each part
+  std::vector<std::shared_ptr<const CodedPart>> codes_;  // what `lists_` points into
   std::vector<List> lists_;
   std::vector<std::int8_t> tails_;              // by row
   NearLists centres_;                           // of the lists
@@ -378,8 +382,8 @@ class CodedIndexMaker::Index : public CodedIndex {
   std::size_t most_in_list_ = 0;
 };
 
-CodedIndexMaker::CodedIndexMaker(const CodedSearchOptions& options)
-    : index_(std::make_unique<Index>(options)) {}
+CodedIndexMaker::CodedIndexMaker(const CodedSearchOptions& options, std::size_t rows)
+    : index_(std::make_unique<Index>(options, rows)) {}
 CodedIndexMaker::~CodedIndexMaker() = default;
 
 void CodedIndexMaker::add(const IndexedPart& part) { index_->add(part); }

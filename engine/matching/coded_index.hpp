@@ -57,10 +57,11 @@ class CodedIndex : public DescriptorIndex {
   virtual bool has_tails() const = 0;
 };
 
-// Takes the parts one after another; their codes are shared, not copied.
+// Takes the parts one after another; their codes are not copied.
 class CodedIndexMaker {
  public:
-  explicit CodedIndexMaker(const CodedSearchOptions& options);
+  // Room is made for the tails of so many rows, where they are kept.
+  explicit CodedIndexMaker(const CodedSearchOptions& options, std::size_t rows = 0);
   CodedIndexMaker(CodedIndexMaker&&) = delete;
   ~CodedIndexMaker();
 

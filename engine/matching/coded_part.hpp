@@ -13,7 +13,7 @@
 namespace landmarkdb {
 
 // The codes of one entry's descriptors as an index reads them: packed for the kernels, list by
-// list. Made once, by whoever reads the codes, and shared by the indexes that hold it.
+// list. Made by whoever reads the codes; indexes point into it.
 struct CodedPart {
   static constexpr std::uint32_t kNoRow = std::numeric_limits<std::uint32_t>::max();
 

@@ -325,10 +325,10 @@ void RangeImage::count_solid(const std::array<Box, 6>& boxes,
 }
 
 RangeImage::Measured RangeImage::measured_at(const Eigen::Vector3f& p) const {
-  constexpr Cell kNothing{0.0F, 0.0F};
+  constexpr Cell kUnknown{0.0F, 0.0F};
   const Eigen::Vector3f ray = p - viewpoint_;
   const float range = ray.norm();
-  if (!(range > 0.0F) || cone_axis_.dot(ray) < cone_cosine_ * range) return {range, kNothing};
+  if (!(range > 0.0F) || cone_axis_.dot(ray) < cone_cosine_ * range) return {range, kUnknown};
   return {range, widened_[index_of(place_of(ray))]};
 }
 
@@ -370,7 +370,7 @@ SightCounts RangeImage::compare(const SightSurface& surface,
     counts.crossed += said == kCrossed ? 1U : 0U;
     counts.agree += said == kAgrees ? 1U : 0U;
     counts.hidden += said == kHidden ? 1U : 0U;
-    says[i] = compared(predicted[i], wide, tolerance.solid * slack);
+    if (said != kNothing) says[i] = compared(predicted[i], wide, tolerance.solid * slack);
   });
   count_solid(rendered.boxes, says, counts);
   return counts;

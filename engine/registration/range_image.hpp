@@ -42,8 +42,8 @@ struct OutlineCounts {
 };
 
 // How far before or behind the measured range still counts as seen: fixed, and a share of the
-// range. What contradicts in an area must be off by no more than `solid` of that: an area of noise
-// does not agree with itself, so that less of it is enough.
+// range. What contradicts in an area need be off by no more than `solid` of that: noise is not off
+// together.
 struct SightTolerance {
   float metres = 0.0F;
   float share = 0.0F;

@@ -57,9 +57,9 @@ double possible_in_place(const Evidence& evidence) {
   return std::max(evidence.coverage, kLeast);
 }
 
-// Of 1,900 frames, half of them of places that were not there, what contradicts by half of the
-// tolerance of sight tells wrong poses best (docs/confidence.md); right ones of real sensors have
-// hardly any of it.
+// Of 2,900 frames, more than half of them of places that were not there, what contradicts by half
+// of the tolerance of sight tells wrong poses best (docs/decisions/0028); right ones of real
+// sensors have hardly any of it.
 constexpr double kContradictionShare = 0.5;
 
 VerifyOptions verify_options(const Meeting& meeting) {

@@ -6,8 +6,8 @@ namespace landmarkdb {
 
 // The chance that a pose is right (within 0.10 m and 5 deg): a logistic function of how far the
 // best different pose is behind (`margin`, 0..1), of the contrast to it, of how well the surface
-// fixes the pose, of what the sensor should have seen and did, and of the descriptors that agree;
-// of an object's, of its quality instead of the last.
+// fixes the pose, of what sensor and scanner saw against it, and of the descriptors that agree. Of
+// an object: object_confidence.hpp.
 double confidence_of(const Evidence& evidence, double quality, double margin);
 
 // What the pose would be believed at by its own evidence, were no other known: with rivals, what

@@ -36,7 +36,7 @@ class EntryCache {
   // As it was given: stays where it is for as long as the cache lives.
   const std::shared_ptr<const Entry>& base(std::size_t i) const { return base_[i]; }
 
-  // The entry with at least these parts, the surface or more. Throws Error{kDataLoss} for a damaged
+  // The entry with at least these parts. Throws Error{kDataLoss} for a damaged
   // one, what its source and `context` throw.
   std::shared_ptr<const Entry> get(std::size_t i, SceneParts parts, const RunContext& context);
 

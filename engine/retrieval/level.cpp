@@ -50,7 +50,8 @@ DescriptorCodes codes_of(const Entry& entry,
                          const RunContext& context) {
   const std::size_t rows = rows_of(entry);
   if (entry.stored.source != nullptr) {
-    auto stored = scene_index_of(*entry.stored.source, rows, with_tails, context);
+    auto stored =
+        scene_index_of(*entry.stored.source, entry.record().kind, rows, with_tails, context);
     if (stored) return std::move(stored->codes);
   }
   std::shared_ptr<const SceneRecord> held;
@@ -68,7 +69,7 @@ std::unique_ptr<CodedIndex> make_index_of_codes(const Entries& entries,
                                                 const CodesAtHand& at_hand,
                                                 const RunContext& context) {
   constexpr std::size_t kAtATime = 64;
-  CodedIndexMaker maker(options);
+  CodedIndexMaker maker(options, rows_of(entries, chosen));
   RunContext alone = context;
   if (chosen.size() > 1) {
     alone.threads = 1;

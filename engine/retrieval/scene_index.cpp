@@ -1,7 +1,7 @@
 #include "engine/retrieval/scene_index.hpp"
 
+#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -36,11 +36,20 @@ bool take(std::span<const std::byte>& bytes, std::size_t count, std::vector<Valu
   return true;
 }
 
-bool all_finite(const std::vector<Eigen::Vector3f>& vectors) {
-  for (const Eigen::Vector3f& v : vectors) {
-    if (!v.allFinite()) return false;
-  }
-  return true;
+constexpr float kMostLocal_m = 1e7F;  // as a scene's own points
+constexpr float kMostOfNormal = 1.01F;
+
+// Numbers that are none are not within anything.
+bool all_within(const std::vector<Eigen::Vector3f>& vectors, float most) {
+  return std::all_of(vectors.begin(), vectors.end(), [&](const Eigen::Vector3f& v) {
+    return (v.array().abs() <= most).all();
+  });
+}
+
+bool is_sound(const PlaceOutline& outline) {
+  return all_within(outline.keypoints, kMostLocal_m) &&
+         all_within(outline.surface.points, kMostLocal_m) &&
+         all_within(outline.surface.normals, kMostOfNormal);
 }
 
 }  // namespace
@@ -71,6 +80,7 @@ SceneIndexBlob make_scene_index(const SceneRecord& record, const RunContext& con
 }
 
 std::optional<SceneIndex> scene_index_from(const SceneIndexBlob& blob,
+                                           EntryKind kind,
                                            std::size_t rows,
                                            bool with_tails) {
   if (!blob.is_made_like(scene_index_format())) return std::nullopt;
@@ -83,7 +93,7 @@ std::optional<SceneIndex> scene_index_from(const SceneIndexBlob& blob,
   if (!take(bytes, 4, counts) || counts[0] != rows) return std::nullopt;
   const std::size_t lists = counts[1];
   const std::size_t keypoints = counts[2];
-  if (keypoints != 0 && keypoints != rows) return std::nullopt;
+  if (keypoints != (kind == EntryKind::kPlace ? rows : 0)) return std::nullopt;
   const bool whole =
       take(bytes, rows == 0 ? 0 : lists + 1, codes.list_start) && take(bytes, rows, codes.rows) &&
       take(bytes, lists * kCodeLength, codes.centres) &&
@@ -94,17 +104,16 @@ std::optional<SceneIndex> scene_index_from(const SceneIndexBlob& blob,
   if (with_tails && !(take(tail_bytes, rows * kCodeLength, codes.tails) && tail_bytes.empty())) {
     return std::nullopt;
   }
-  const bool finite = all_finite(outline.keypoints) && all_finite(outline.surface.points) &&
-                      all_finite(outline.surface.normals);
-  return finite ? std::optional(std::move(index)) : std::nullopt;
+  return is_sound(outline) ? std::optional(std::move(index)) : std::nullopt;
 }
 
 std::optional<SceneIndex> scene_index_of(const SceneSource& source,
+                                         EntryKind kind,
                                          std::size_t rows,
                                          bool with_tails,
                                          const RunContext& context) {
   const std::optional<SceneIndexBlob> stored = source.index(with_tails, context);
-  return stored ? scene_index_from(*stored, rows, with_tails) : std::nullopt;
+  return stored ? scene_index_from(*stored, kind, rows, with_tails) : std::nullopt;
 }
 
 }  // namespace landmarkdb

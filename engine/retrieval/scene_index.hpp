@@ -25,13 +25,15 @@ SceneIndexBlob scene_index_format();
 SceneIndexBlob make_scene_index(const SceneRecord& record, const RunContext& context);
 
 // The index again; nothing where it is of another format, or damaged, or not of `rows`
-// descriptors. Without tails the blob needs none.
+// descriptors, or where a place's has no keypoints for them. Without tails the blob needs none.
 std::optional<SceneIndex> scene_index_from(const SceneIndexBlob& blob,
+                                           EntryKind kind,
                                            std::size_t rows,
                                            bool with_tails);
 
 // What is stored with a scene; nothing where there is none that is sound.
 std::optional<SceneIndex> scene_index_of(const SceneSource& source,
+                                         EntryKind kind,
                                          std::size_t rows,
                                          bool with_tails,
                                          const RunContext& context);

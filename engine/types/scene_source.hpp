@@ -26,7 +26,7 @@ struct SceneIndexBlob {
   }
 };
 
-// How much of a scene is wanted in memory.
+// How much of a scene is wanted in memory, the second more than the first.
 enum class SceneParts {
   kSurface,  // all but descriptor values
   kWhole,

@@ -1,5 +1,7 @@
 #include "store/catalog.hpp"
 
+#include "store/manifest.hpp"
+#include "store/sha256.hpp"
 #include "store/store.hpp"
 #include "tests/unit/store/store_support.hpp"
 
@@ -8,6 +10,7 @@ namespace {
 
 using testing::error_of;
 using testing::make_record;
+using testing::TempFolder;
 
 Store with_two_scenes() {
   Store store = Store::create_or_open(":memory:");
@@ -60,6 +63,34 @@ TEST(LoadCatalog, CanBeStopped) {
     if (progress.done == 1) source.request_stop();
   };
   EXPECT_EQ(error_of([&] { store.load_catalog(context); }).code, ErrorCode::kCancelled);
+}
+
+TEST(LoadOutlines, SetsASceneAsideThatSaysMoreThanTheFileHolds) {
+  const TempFolder folder;
+  const std::string path = folder.file("x.db");
+  Store::create_or_open(path).insert(make_record("lobby"), {});
+  {
+    const sqlite::Database database(path, sqlite::OpenMode::kReadWrite, std::chrono::seconds(1));
+    sqlite::Statement row(database, "SELECT manifest FROM segment");
+    ASSERT_TRUE(row.step());
+    Manifest manifest = manifest_from_json(row.text(0), "lobby");
+    for (ArrayInfo& info : manifest.arrays) {
+      if (info.name != "keypoints") continue;
+      info.shape[0] = std::uint64_t{1} << 40U;
+      info.bytes = 12 * info.shape[0];
+    }
+    const std::string json = manifest_to_json(manifest);
+    const std::string digest = sha256_of(json);
+    sqlite::Statement update(database, "UPDATE segment SET manifest = ?, sha256 = ?");
+    update.bind(json).bind(digest);
+    update.run();
+  }
+  std::vector<DamagedScene> damaged;
+  const auto catalog = Store::open_read_only(path).load_outlines(
+      {}, [&](const DamagedScene& scene) { damaged.push_back(scene); });
+  EXPECT_TRUE(catalog->entries.empty());
+  ASSERT_EQ(damaged.size(), 1U);
+  EXPECT_THAT(damaged[0].what, ::testing::HasSubstr("more bytes than the database"));
 }
 
 TEST(LoadCatalog, DoesNotTakeAnotherFilesSceneForTheOneItHolds) {

@@ -93,6 +93,26 @@ TEST(Migrations, AFileThatVersion1WroteKeepsItsSceneAndTakesModels) {
   EXPECT_THAT(store.list_models(), ::testing::IsEmpty());
 }
 
+TEST(Migrations, SearchIndexesOfVersion3AreDroppedAndMadeAnew) {
+  const TempFolder folder;
+  const std::string path = folder.file("old.db");
+  {
+    const Database database(path, OpenMode::kCreate, 0ms);
+    apply_migrations(database, all_migrations().first(3));
+    database.execute("PRAGMA application_id = " + std::to_string(kApplicationId));
+    database.execute(
+        "INSERT INTO segment (id, format, bytes, manifest, sha256) VALUES (1, 1, 0, '{}', '" +
+        std::string(64, 'a') +
+        "'); INSERT INTO scene_index (segment_id, version, params, codes, digest) "
+        "VALUES (1, 2, 'of before', x'01', '" +
+        std::string(64, 'b') + "')");
+  }
+  EXPECT_THAT(Store::migrate(path, false, {}).steps, ElementsAre("0004_scene_index_parts"));
+  const Database database(path, OpenMode::kReadOnly, 0ms);
+  EXPECT_EQ(database.integer("SELECT count(*) FROM segment"), 1);
+  EXPECT_EQ(database.integer("SELECT count(*) FROM scene_index"), 0);
+}
+
 TEST(Migrations, ACurrentDatabaseIsLeftAlone) {
   const TempFolder folder;
   Store::create_or_open(folder.file("x.db"));

@@ -182,6 +182,18 @@ TEST(RangeImage, TakesLessSlackForWhatContradictsInAnArea) {
   EXPECT_EQ(counts.solid_crossed, counts.agree);
 }
 
+TEST(RangeImage, TakesNoBackForAContradictionByPartOfTheSlack) {
+  const RangeImage image(wall(2.0F), Eigen::Vector3f::Zero(), kStep);
+  const Points nearer = patch({-0.6F, -0.6F}, {0.6F, 0.6F}, 1.9F);
+  const Points away(nearer.size(), Eigen::Vector3f::UnitZ());  // seen from behind
+  SightTolerance tolerance = kTolerance;
+  tolerance.solid = 0.5F;
+  const SightCounts counts =
+      image.compare({nearer, away, 0.0}, Eigen::Isometry3d::Identity(), kPatch_m, tolerance);
+  EXPECT_EQ(counts.predicted(), 0U);
+  EXPECT_EQ(counts.solid, 0U);
+}
+
 TEST(RangeImage, LetsSilhouettesDecideNothing) {
   // A post before a wall. The entry has both, half a cell aside: its edges must not count as
   // crossed or hidden.

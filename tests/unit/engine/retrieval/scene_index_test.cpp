@@ -41,7 +41,7 @@ TEST(SceneIndex, GivesCodesAndOutlineBack) {
     const DescriptorCodes codes = make_codes(record.descriptors.values, {});
     const PlaceOutline outline = make_place_outline(record);
     const std::optional<SceneIndex> read =
-        scene_index_from(make_scene_index(record, {}), rows, true);
+        scene_index_from(make_scene_index(record, {}), EntryKind::kPlace, rows, true);
     ASSERT_TRUE(read) << rows;
     EXPECT_EQ(read->codes.centres, codes.centres);
     EXPECT_EQ(read->codes.list_start, codes.list_start);
@@ -60,7 +60,7 @@ TEST(SceneIndex, GivesCodesAndOutlineBack) {
 TEST(SceneIndex, OfAnObjectHasNoOutline) {
   const SceneRecord record = record_of(kRows, EntryKind::kObject);
   const std::optional<SceneIndex> read =
-      scene_index_from(make_scene_index(record, {}), kRows, true);
+      scene_index_from(make_scene_index(record, {}), EntryKind::kObject, kRows, true);
   ASSERT_TRUE(read);
   EXPECT_TRUE(read->outline.surface.points.empty());
   EXPECT_TRUE(read->outline.keypoints.empty());
@@ -69,35 +69,54 @@ TEST(SceneIndex, OfAnObjectHasNoOutline) {
 
 TEST(SceneIndex, IsNothingWhenItDoesNotFit) {
   const SceneIndexBlob good = make_scene_index(record_of(kRows), {});
-  EXPECT_FALSE(scene_index_from(good, kRows - 1, true));
+  EXPECT_FALSE(scene_index_from(good, EntryKind::kPlace, kRows - 1, true));
   SceneIndexBlob other = good;
   other.version = 1;
-  EXPECT_FALSE(scene_index_from(other, kRows, true));
+  EXPECT_FALSE(scene_index_from(other, EntryKind::kPlace, kRows, true));
   other = good;
   other.params += "!";
-  EXPECT_FALSE(scene_index_from(other, kRows, true));
+  EXPECT_FALSE(scene_index_from(other, EntryKind::kPlace, kRows, true));
   for (std::size_t cut = 0; cut < good.codes.size(); cut += 997) {
     other = good;
     other.codes.resize(cut);
-    EXPECT_FALSE(scene_index_from(other, kRows, true)) << cut;
+    EXPECT_FALSE(scene_index_from(other, EntryKind::kPlace, kRows, true)) << cut;
   }
   other = good;
   other.codes.push_back({});
-  EXPECT_FALSE(scene_index_from(other, kRows, true));
+  EXPECT_FALSE(scene_index_from(other, EntryKind::kPlace, kRows, true));
   for (const std::size_t count : {4U, 8U, 12U}) {  // four billion lists, keypoints or points
     other = good;
     for (std::size_t i = count; i < count + 4; ++i) other.codes[i] = std::byte{255};
-    EXPECT_FALSE(scene_index_from(other, kRows, true));
+    EXPECT_FALSE(scene_index_from(other, EntryKind::kPlace, kRows, true));
+  }
+}
+
+TEST(SceneIndex, OfAPlaceMustHaveItsKeypoints) {
+  const SceneIndexBlob of_object = make_scene_index(record_of(kRows, EntryKind::kObject), {});
+  EXPECT_TRUE(scene_index_from(of_object, EntryKind::kObject, kRows, true));
+  EXPECT_FALSE(scene_index_from(of_object, EntryKind::kPlace, kRows, true));
+  const SceneIndexBlob of_place = make_scene_index(record_of(kRows), {});
+  EXPECT_FALSE(scene_index_from(of_place, EntryKind::kObject, kRows, true));
+}
+
+TEST(SceneIndex, IsNothingWithKeypointsThatAreNowhere) {
+  for (const float far : {std::numeric_limits<float>::quiet_NaN(), 1e30F}) {
+    SceneRecord record = record_of(kRows);
+    record.descriptors.keypoints[7].y() = far;
+    const SceneIndexBlob blob = make_scene_index(record, {});
+    EXPECT_FALSE(scene_index_from(blob, EntryKind::kPlace, kRows, true)) << far;
   }
 }
 
 TEST(SceneIndex, NeedsTailsOnlyWhereTheyAreWanted) {
   SceneIndexBlob blob = make_scene_index(record_of(kRows), {});
-  blob.tails.pop_back();
-  EXPECT_FALSE(scene_index_from(blob, kRows, true));
+  blob.tails.push_back({});
+  EXPECT_FALSE(scene_index_from(blob, EntryKind::kPlace, kRows, true));
+  blob.tails.resize(blob.tails.size() - 2);
+  EXPECT_FALSE(scene_index_from(blob, EntryKind::kPlace, kRows, true));
   blob.tails.clear();
-  EXPECT_FALSE(scene_index_from(blob, kRows, true));
-  const std::optional<SceneIndex> read = scene_index_from(blob, kRows, false);
+  EXPECT_FALSE(scene_index_from(blob, EntryKind::kPlace, kRows, true));
+  const std::optional<SceneIndex> read = scene_index_from(blob, EntryKind::kPlace, kRows, false);
   ASSERT_TRUE(read);
   EXPECT_TRUE(read->codes.tails.empty());
 }
@@ -107,7 +126,7 @@ TEST(SceneIndex, IsNothingWithANumberThatIsNone) {
   for (std::size_t i = blob.codes.size() - 4; i < blob.codes.size(); ++i) {
     blob.codes[i] = std::byte{255};
   }
-  EXPECT_FALSE(scene_index_from(blob, kRows, true));
+  EXPECT_FALSE(scene_index_from(blob, EntryKind::kPlace, kRows, true));
 }
 
 }  // namespace
