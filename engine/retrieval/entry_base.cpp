@@ -62,8 +62,7 @@ void add_outline(CatalogEntry stored,
                  std::shared_ptr<const Entry>& entry,
                  std::optional<EntryCodes>& codes) {
   const auto rows = static_cast<std::size_t>(stored.keypoints);
-  std::optional<SceneIndex> index =
-      scene_index_of(*stored.source, stored.record->kind, rows, with_tails, context);
+  std::optional<SceneIndex> index = scene_index_of(stored, with_tails, context);
   if (index) {
     codes = EntryCodes(index->codes, rows, with_tails);
   } else {

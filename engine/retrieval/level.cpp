@@ -50,8 +50,7 @@ DescriptorCodes codes_of(const Entry& entry,
                          const RunContext& context) {
   const std::size_t rows = rows_of(entry);
   if (entry.stored.source != nullptr) {
-    auto stored =
-        scene_index_of(*entry.stored.source, entry.record().kind, rows, with_tails, context);
+    std::optional<SceneIndex> stored = scene_index_of(entry.stored, with_tails, context);
     if (stored) return std::move(stored->codes);
   }
   std::shared_ptr<const SceneRecord> held;

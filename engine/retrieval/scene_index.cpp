@@ -107,13 +107,13 @@ std::optional<SceneIndex> scene_index_from(const SceneIndexBlob& blob,
   return is_sound(outline) ? std::optional(std::move(index)) : std::nullopt;
 }
 
-std::optional<SceneIndex> scene_index_of(const SceneSource& source,
-                                         EntryKind kind,
-                                         std::size_t rows,
+std::optional<SceneIndex> scene_index_of(const CatalogEntry& stored,
                                          bool with_tails,
                                          const RunContext& context) {
-  const std::optional<SceneIndexBlob> stored = source.index(with_tails, context);
-  return stored ? scene_index_from(*stored, kind, rows, with_tails) : std::nullopt;
+  const std::optional<SceneIndexBlob> blob = stored.source->index(with_tails, context);
+  if (!blob) return std::nullopt;
+  return scene_index_from(
+      *blob, stored.record->kind, static_cast<std::size_t>(stored.keypoints), with_tails);
 }
 
 }  // namespace landmarkdb

@@ -31,10 +31,8 @@ std::optional<SceneIndex> scene_index_from(const SceneIndexBlob& blob,
                                            std::size_t rows,
                                            bool with_tails);
 
-// What is stored with a scene; nothing where there is none that is sound.
-std::optional<SceneIndex> scene_index_of(const SceneSource& source,
-                                         EntryKind kind,
-                                         std::size_t rows,
+// What is stored with an entry that has a source; nothing where there is none that is sound.
+std::optional<SceneIndex> scene_index_of(const CatalogEntry& stored,
                                          bool with_tails,
                                          const RunContext& context);
 
