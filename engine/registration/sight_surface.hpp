@@ -38,6 +38,11 @@ class SightSurface {
     return (points_.size() + normals_.size()) * sizeof(Eigen::Vector3f) +
            blocks_.size() * sizeof(Block);
   }
+  // What the surface of so many points takes at most.
+  static std::size_t most_bytes(std::size_t points, bool has_normals) {
+    return points * (has_normals ? 2 : 1) * sizeof(Eigen::Vector3f) +
+           (2 * points / kBlockPoints + 1) * sizeof(Block);
+  }
 
  private:
   std::vector<Eigen::Vector3f> points_;

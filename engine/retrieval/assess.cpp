@@ -221,7 +221,7 @@ void assess_precisely(const Meeting& meeting,
                  query,
                  meeting.source,
                  meeting.source_normals,
-                 entry.sight,
+                 entry.sight.get(),
                  entry.record().prepared.resolution_m,
                  assessed);
 }

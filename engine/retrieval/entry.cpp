@@ -26,10 +26,17 @@ SurfaceGrid grid_of_scene(const SceneRecord& record, const RunContext& context) 
 }
 
 // Objects are small, and seen close by: all of their points count.
-SightSurface sight_of(const PreparedCloud& cloud, bool is_object) {
+SightSurface sight_of(const SceneRecord& record) {
+  const PreparedCloud& cloud = record.prepared;
   const std::span<const Eigen::Vector3f> normals =
       cloud.normals_from_viewpoint ? cloud.normals : std::span<const Eigen::Vector3f>{};
+  const bool is_object = record.kind == EntryKind::kObject;
   return SightSurface(cloud.points, normals, is_object ? 0.0 : cloud.resolution_m);
+}
+
+std::vector<PlaneLayout> planes_of(const SceneRecord& record) {
+  const PreparedCloud& cloud = record.prepared;
+  return lay_out_planes(cloud.points, cloud.normals, plane_bin_m(cloud.resolution_m), kLayouts);
 }
 
 }  // namespace
@@ -85,7 +92,8 @@ std::vector<std::uint32_t> spread(std::size_t size, std::size_t count) {
 }
 
 Entry make_entry(CatalogEntry stored, const RunContext& context) {
-  const SceneRecord& record = *stored.record;
+  const std::shared_ptr<const SceneRecord> held = stored.record;
+  const SceneRecord& record = *held;
   const PreparedCloud& cloud = record.prepared;
   const bool is_object = record.kind == EntryKind::kObject;
   constexpr std::uint64_t kSeed = 1;  // an entry's own sample: the same for every query
@@ -94,16 +102,14 @@ Entry make_entry(CatalogEntry stored, const RunContext& context) {
       .grid = grid_of_scene(record, context),
       .wide = is_object ? SurfaceGrid({}, {}, 1.0, 0) : make_wide_grid(cloud),
       .wide_sight = {},
-      .planes = is_object
-                    ? std::vector<PlaneLayout>{}
-                    : lay_out_planes(
-                          cloud.points, cloud.normals, plane_bin_m(cloud.resolution_m), kLayouts),
+      .planes = is_object ? Lazy<std::vector<PlaneLayout>>()
+                          : Lazy<std::vector<PlaneLayout>>([held] { return planes_of(*held); }),
       .test = is_object ? select_test_points(cloud.points, cloud.normals, {}, kTestPoints, kSeed)
                         : TestPoints{},
       .scanned = {},
       .frames =
           is_object ? std::vector<PackedRotation>{} : pack_rotations(record.descriptors.frames),
-      .sight = sight_of(cloud, is_object),
+      .sight = Lazy<SightSurface>([held] { return sight_of(*held); }),
       .centre = Eigen::Vector3d::Zero(),
       .extent_m = 0.0};
   if (!is_object) {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "engine/base/lazy.hpp"
 #include "engine/base/run_context.hpp"
 #include "engine/geometry/packed_rotation.hpp"
 #include "engine/registration/plane_layout.hpp"
@@ -19,17 +20,18 @@
 
 namespace landmarkdb {
 
-// One catalogue entry with what the search derives from it. Immutable, thread-safe.
+// One catalogue entry with what the search derives from it, some of it only when it is asked for.
+// Immutable, thread-safe.
 struct Entry {
   CatalogEntry stored;
   SurfaceGrid grid;
   SurfaceGrid wide;                                  // of places: the same surface in larger cells
   SightSurface wide_sight;                           // of its surfels
-  std::vector<PlaneLayout> planes;                   // of places that have a frame of right angles
+  Lazy<std::vector<PlaneLayout>> planes;             // of places that have a frame of right angles
   TestPoints test;                                   // of the entry's own surface, for objects
   ScannedSpace scanned;                              // of places scanned from known viewpoints
   std::vector<PackedRotation> frames;                // of places: the keypoints' local frames
-  SightSurface sight;                                // of the whole surface, for free space
+  Lazy<SightSurface> sight;                          // of the whole surface, for free space
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean of the points
   double extent_m = 0.0;                             // twice the root mean square distance from it
 

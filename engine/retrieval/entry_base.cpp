@@ -54,6 +54,14 @@ std::vector<bool> tails_kept(const Entries& entries) {
   return kept;
 }
 
+// An entry that is kept for good, with all that is made when it is asked for.
+std::shared_ptr<const Entry> whole_entry(CatalogEntry stored, const RunContext& context) {
+  auto entry = std::make_shared<const Entry>(make_entry(std::move(stored), context));
+  entry->sight.get();
+  entry->planes.get();
+  return entry;
+}
+
 // Of a place that is read when it is looked at closely: what is stored with it for that, or, with
 // none, made from its points.
 void add_outline(CatalogEntry stored,
@@ -85,7 +93,7 @@ EntryBase make_entry_base(const Catalog& catalog,
     if (catalog.entries[i].source == nullptr) in_memory.push_back(i);
   }
   for_each_entry(in_memory, context, [&](std::size_t i) {
-    base.entries[i] = std::make_shared<const Entry>(make_entry(catalog.entries[i], context));
+    base.entries[i] = whole_entry(catalog.entries[i], context);
   });
   EntryCache outlines(base.entries, 0);
   std::vector<bool> whole(catalog.entries.size(), false);
@@ -108,7 +116,7 @@ EntryBase make_entry_base(const Catalog& catalog,
       }
       stored.record = stored.source->load(SceneParts::kWhole, alone);
       stored.source = nullptr;  // there is nothing left to be read
-      base.entries[i] = std::make_shared<const Entry>(make_entry(std::move(stored), alone));
+      base.entries[i] = whole_entry(std::move(stored), alone);
     } catch (const Error& error) {
       if (!is_damage(error)) throw;
       base.damage[i] = error.what();

@@ -29,7 +29,8 @@ std::size_t memory_bytes(const Entry& entry) {
   return bytes_of(cloud.points) + bytes_of(cloud.normals) + bytes_of(cloud.viewpoint_index) +
          bytes_of(set.keypoints) + bytes_of(set.normals) + bytes_of(set.frames) +
          bytes_of(set.values) + entry.grid.memory_bytes() + entry.wide.memory_bytes() +
-         entry.wide_sight.memory_bytes() + entry.sight.memory_bytes() +
+         entry.wide_sight.memory_bytes() +
+         SightSurface::most_bytes(cloud.points.size(), cloud.normals_from_viewpoint) +
          entry.scanned.memory_bytes() + bytes_of(entry.frames);
 }
 

@@ -77,7 +77,8 @@ class EntryCache {
 // that cannot be read.
 bool is_damage(const Error& error);
 
-// What the entry takes, roughly: its points, grids and what of its record is loaded.
+// What the entry takes, roughly: its points, grids and what of its record is loaded, and its
+// surface for sight, whether that was made yet or not.
 std::size_t memory_bytes(const Entry& entry);
 
 }  // namespace landmarkdb

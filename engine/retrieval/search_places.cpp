@@ -220,7 +220,7 @@ std::vector<Proposal> propose(const SearchInput& input, const EntryMatches& matc
   std::vector<Proposal> proposals = propose_from_frames(
       matches.putative, entry.record().descriptors, matches.view->descriptors, gravity, prior);
   if (!matches.by_planes) return proposals;
-  for (const PlaneLayout& of_entry : entry.planes) {
+  for (const PlaneLayout& of_entry : entry.planes.get()) {
     for (const PlaneLayout& of_query : matches.view->planes) {
       const std::vector<Proposal> more =
           propose_from_planes(of_entry, of_query, input.query.centre.cast<float>(), gravity, prior);
