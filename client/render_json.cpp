@@ -2,9 +2,9 @@
 
 #include <numbers>
 
-#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "client/pose_values.hpp"
 #include "client/render_explanation.hpp"
 #include "engine/geometry/pose.hpp"
 
@@ -18,14 +18,6 @@ Json numbers_json(const Numbers& numbers) {
   Json out = Json::array();
   for (const double number : numbers) out.push_back(number);
   return out;
-}
-
-Json vector_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
-
-Json rotation_json(const Eigen::Matrix3d& R) {
-  Eigen::Quaterniond q(R);
-  if (q.w() < 0.0) q.coeffs() = -q.coeffs();  // one of the two that mean the same
-  return Json::array({q.x(), q.y(), q.z(), q.w()});
 }
 
 Json covariance_json(const Eigen::Matrix<double, 6, 6>& covariance) {

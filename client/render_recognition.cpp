@@ -1,13 +1,12 @@
 #include "client/render_recognition.hpp"
 
 #include <cstdio>
-#include <numbers>
 
-#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include "cli/model_view.hpp"
 #include "cli/table.hpp"
+#include "client/pose_values.hpp"
 #include "engine/geometry/pose.hpp"
 
 namespace landmarkdb::client {
@@ -20,19 +19,6 @@ std::string formatted(const char* format, Values... values) {
   char text[256];
   std::snprintf(text, sizeof text, format, values...);
   return text;
-}
-
-Json vector_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
-
-// About z, y, x, in degrees.
-Eigen::Vector3d euler_zyx_deg(const Eigen::Matrix3d& R) {
-  return roll_pitch_yaw_rad(R).reverse() * (180.0 / std::numbers::pi);
-}
-
-Json rotation_json(const Eigen::Matrix3d& R) {
-  Eigen::Quaterniond q(R);
-  if (q.w() < 0.0) q.coeffs() = -q.coeffs();  // one of the two that mean the same
-  return Json::array({q.x(), q.y(), q.z(), q.w()});
 }
 
 Json hypothesis_json(const MonoHypothesis& h, std::size_t image_points) {

@@ -1,17 +1,14 @@
 #include "client/render_track.hpp"
 
-#include <numbers>
-
 #include <nlohmann/json.hpp>
 
+#include "client/pose_values.hpp"
 #include "engine/geometry/pose.hpp"
 
 namespace landmarkdb::client {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json vector_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
 Json servo_json(const ServoAnswer& servo) {
   return {{"status", servo.status},
@@ -37,11 +34,9 @@ Json track_json(const std::string& name, const TrackedFrame& frame) {
   if (!frame.reason.empty()) out["reason"] = frame.reason;
   if (frame.T_camera_object) {
     const Eigen::Isometry3d& T = *frame.T_camera_object;
-    constexpr double kDegrees = 180.0 / std::numbers::pi;
     out["T_camera_object"] = to_row_major(T.matrix());
     out["translation_m"] = vector_json(T.translation());
-    // About z, then y, then x: R = Rz Ry Rx.
-    out["euler_zyx_deg"] = vector_json(roll_pitch_yaw_rad(T.linear()).reverse() * kDegrees);
+    out["euler_zyx_deg"] = vector_json(euler_zyx_deg(T.linear()));
   } else {
     for (const char* key : {"T_camera_object", "translation_m", "euler_zyx_deg"}) {
       out[key] = nullptr;

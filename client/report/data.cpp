@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "client/pose_values.hpp"
 #include "client/report/html.hpp"
 #include "engine/geometry/pose.hpp"
 #include "engine/geometry/quantise.hpp"
@@ -10,8 +11,6 @@ namespace landmarkdb::client {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json vector_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
 Json points_json(std::span<const Eigen::Vector3f> points, const Eigen::Vector3d& origin) {
   const QuantisedPoints quantised = quantise(points);
