@@ -28,10 +28,7 @@ Eigen::Vector3d round_origin(const Eigen::Vector3d& p) {
   return (p / kRound_m).array().round() * kRound_m;
 }
 
-CloudBuilder::CloudBuilder(double metres, const Eigen::Isometry3d& T_world_file)
-    : metres_(metres),
-      T_world_file_(T_world_file),
-      identity_(T_world_file.matrix() == Eigen::Matrix4d::Identity()) {}
+CloudBuilder::CloudBuilder(double metres) : metres_(metres) {}
 
 void CloudBuilder::hand_to(const CloudSink& sink, std::span<const Eigen::Vector3d> viewpoints) {
   sink_ = &sink;
@@ -68,8 +65,7 @@ void CloudBuilder::add_point(const Eigen::Vector3d& p_file) {
     cloud_.origin = origin;
     reserve_block();
   }
-  const Eigen::Vector3d p =
-      metres_ * (identity_ ? p_file : Eigen::Vector3d(T_world_file_ * p_file));
+  const Eigen::Vector3d p = metres_ * p_file;
   if (decided_) {
     cloud_.points.push_back(to_local(p, cloud_.origin));
     return;
@@ -79,8 +75,7 @@ void CloudBuilder::add_point(const Eigen::Vector3d& p_file) {
 }
 
 void CloudBuilder::add_normal(const Eigen::Vector3d& n_file) {
-  const Eigen::Vector3d n = identity_ ? n_file : Eigen::Vector3d(T_world_file_.linear() * n_file);
-  cloud_.normals.push_back(to_local(n, Eigen::Vector3d::Zero()));
+  cloud_.normals.push_back(to_local(n_file, Eigen::Vector3d::Zero()));
 }
 
 void CloudBuilder::add_colour(const std::array<std::uint8_t, 3>& colour) {

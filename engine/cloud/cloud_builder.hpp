@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include "engine/cloud/read_cloud.hpp"
 #include "engine/types/point_cloud.hpp"
@@ -23,13 +22,10 @@ Eigen::Vector3d round_origin(const Eigen::Vector3d& p);
 // float would lose 0.1 mm; then that median, rounded. Not thread-safe.
 class CloudBuilder {
  public:
-  // `metres` is the length of one file unit; `T_world_file` (translation in file units) is applied
-  // to points and normals.
-  explicit CloudBuilder(double metres,
-                        const Eigen::Isometry3d& T_world_file = Eigen::Isometry3d::Identity());
+  explicit CloudBuilder(double metres);  // the length of one file unit
 
   // From now on whole blocks are handed to the sink, which must outlive the builder, and finish
-  // returns what is left. `viewpoints` in file units, world frame: of every block.
+  // returns what is left. `viewpoints` in file units: of every block.
   void hand_to(const CloudSink& sink, std::span<const Eigen::Vector3d> viewpoints);
   // Whether that has happened to a block.
   bool in_blocks() const { return handed_ > 0; }
@@ -51,10 +47,8 @@ class CloudBuilder {
   PointCloud take_block();
 
   double metres_;
-  Eigen::Isometry3d T_world_file_;
-  bool identity_;
   bool decided_ = false;
-  std::vector<Eigen::Vector3d> pending_;  // world frame, metres; until the origin is decided
+  std::vector<Eigen::Vector3d> pending_;  // metres; until the origin is decided
   PointCloud cloud_;
   const CloudSink* sink_ = nullptr;
   std::vector<Eigen::Vector3d> viewpoints_;  // of the sink's blocks

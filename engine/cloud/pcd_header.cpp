@@ -164,9 +164,8 @@ void take_size(const Input& input, const Lines& lines, PcdHeader& header) {
   }
 }
 
-Eigen::Isometry3d take_viewpoint(const Input& input, const Words& words) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  if (words.empty()) return T;
+std::optional<Eigen::Vector3d> take_viewpoint(const Input& input, const Words& words) {
+  if (words.empty()) return std::nullopt;
   std::array<double, 7> values{};
   const bool seven = words.size() == values.size();
   for (std::size_t i = 0; seven && i < values.size(); ++i) {
@@ -177,11 +176,10 @@ Eigen::Isometry3d take_viewpoint(const Input& input, const Words& words) {
   if (!seven || !finite) {
     refuse(input, "PCD header: VIEWPOINT wants seven numbers, tx ty tz qw qx qy qz");
   }
-  T.translation() = Eigen::Vector3d(values[0], values[1], values[2]);
-  const Eigen::Quaterniond q(values[3], values[4], values[5], values[6]);
-  // Some writers leave the quaternion zero; they mean that there is no rotation.
-  if (q.norm() > 0.0 && std::isfinite(q.norm())) T.linear() = q.normalized().toRotationMatrix();
-  return T;
+  // How the sensor was turned says nothing of points that are in the frame of the file.
+  const Eigen::Vector3d at(values[0], values[1], values[2]);
+  const Eigen::Vector3d axis(values[4], values[5], values[6]);
+  return at.isZero(0.0) && axis.isZero(0.0) ? std::nullopt : std::optional(at);
 }
 
 PcdData take_data(const Input& input, const Words& words) {
@@ -201,7 +199,7 @@ PcdHeader parse_pcd_header(const Input& input, std::uint64_t max_points) {
   header.body = collect_lines(input, lines);
   lay_out_fields(input, lines, header);
   take_size(input, lines, header);
-  header.T_world_sensor = take_viewpoint(input, lines.viewpoint);
+  header.viewpoint = take_viewpoint(input, lines.viewpoint);
   header.data = take_data(input, lines.data);
   if (header.record_values == 0) refuse(input, "PCD header: the fields have no values");
   constexpr std::uint64_t kLeastTextBytes = 2;  // a digit and a blank

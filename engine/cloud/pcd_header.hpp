@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 
 #include "engine/cloud/input.hpp"
 #include "engine/cloud/scalar.hpp"
@@ -26,7 +27,9 @@ struct PcdHeader {
   std::vector<PcdField> fields;
   std::uint64_t points = 0;
   std::uint32_t width = 0, height = 0;  // 0 x 0 unless the cloud is organised
-  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();  // VIEWPOINT, file units
+  // Where VIEWPOINT says that the points were taken from, in their frame and unit; nothing where it
+  // is the identity, which nearly every PCD file has, or is not there.
+  std::optional<Eigen::Vector3d> viewpoint;
   PcdData data = PcdData::kAscii;
   std::size_t body = 0;          // where the data starts
   std::size_t record_bytes = 0;  // of a point

@@ -32,9 +32,10 @@ struct ReadOptions {
 // cannot.
 //
 // Coordinates too far from zero for float keep their precision: `origin` takes a round offset. NaN
-// points are kept (see sanitise); an organised cloud stays organised. A viewpoint in a PCD header
-// is applied: `points` and `viewpoints` are in the file's world frame. The identity viewpoint,
-// which nearly every PCD file has, is believed of organised clouds only. PLY has viewpoints where
+// points are kept (see sanitise); an organised cloud stays organised. Points are in
+// the frame of the file, as they stand there: a VIEWPOINT in a PCD header is where they were taken
+// from and moves none. The identity, which nearly every PCD file has, is believed of organised
+// clouds only. PLY has viewpoints where
 // write_cloud put them. A mesh's samples have normals when its vertices have, or when it is closed.
 //
 // Throws Error{kInvalidArgument} that names the file, what was seen and what was wanted:

@@ -187,14 +187,13 @@ void parse_pcd(const Input& input, const ReadOptions& options, const CloudSink& 
   const Roles roles = find_roles(input, header);
   const bool normals = complete(roles.normal);
   const bool colours = roles.packed_colour != nullptr || complete(roles.colour);
-  // An identity VIEWPOINT stands in nearly every PCD file, maps too; only a picture (rows and
-  // columns) was surely taken from there.
+  // Of what says nothing else only a picture (rows and columns) was surely taken from its zero.
   const bool organised = header.height > 1;
-  const bool known = organised || header.T_world_sensor.matrix() != Eigen::Matrix4d::Identity();
-  const Eigen::Vector3d viewpoint = header.T_world_sensor.translation();
+  const bool known = organised || header.viewpoint;
+  const Eigen::Vector3d viewpoint = header.viewpoint.value_or(Eigen::Vector3d::Zero());
   const std::span<const Eigen::Vector3d> viewpoints(&viewpoint, known ? 1 : 0);
   PointReader reader(input, header);
-  CloudBuilder builder(metres_per(options.units), header.T_world_sensor);
+  CloudBuilder builder(metres_per(options.units));
   builder.hand_to(sink, viewpoints);
   builder.reserve(static_cast<std::size_t>(header.points), normals, colours);
   const std::uint64_t bytes_each = input.size() / header.points;  // for the progress

@@ -94,8 +94,7 @@ std::string ply_header(const PointCloud& cloud, const Layout& layout) {
   return out.str();
 }
 
-// One viewpoint goes into the header (points are then written as seen from there); PCD has no place
-// for several.
+// PCD has no place for several.
 Eigen::Vector3d pcd_viewpoint(const PointCloud& cloud) {
   if (cloud.viewpoints.size() != 1) return Eigen::Vector3d::Zero();
   return cloud.origin + cloud.viewpoints[0].cast<double>();
@@ -118,32 +117,20 @@ std::string pcd_header(const PointCloud& cloud, const Layout& layout) {
   return out.str();
 }
 
-void append_position(std::string& bytes,
-                     const PointCloud& cloud,
-                     std::size_t i,
-                     const Eigen::Vector3d& from,
-                     bool doubles) {
-  if (!doubles && from.isZero(0.0)) {
-    for (int axis = 0; axis < 3; ++axis) append(bytes, cloud.points[i][axis]);
-    return;
-  }
-  const Eigen::Vector3d p = cloud.origin + cloud.points[i].cast<double>() - from;
+void append_position(std::string& bytes, const PointCloud& cloud, std::size_t i, bool doubles) {
   for (int axis = 0; axis < 3; ++axis) {
+    const float local = cloud.points[i][axis];
     if (doubles) {
-      append(bytes, p[axis]);
+      append(bytes, cloud.origin[axis] + static_cast<double>(local));
     } else {
-      append(bytes, static_cast<float>(p[axis]));
+      append(bytes, local);
     }
   }
 }
 
-void append_point(std::string& bytes,
-                  const PointCloud& cloud,
-                  std::size_t i,
-                  const Layout& layout,
-                  bool pcd,
-                  const Eigen::Vector3d& from) {
-  append_position(bytes, cloud, i, from, layout.doubles);
+void append_point(
+    std::string& bytes, const PointCloud& cloud, std::size_t i, const Layout& layout, bool pcd) {
+  append_position(bytes, cloud, i, layout.doubles);
   if (layout.normals) {
     for (int axis = 0; axis < 3; ++axis) append(bytes, cloud.normals[i][axis]);
   }
@@ -166,13 +153,12 @@ void write_cloud(const std::filesystem::path& path, const PointCloud& cloud) {
   constexpr std::size_t kBuffer = std::size_t{1} << 20U;
   const bool pcd = path.extension() == ".pcd";
   const Layout layout = choose_layout(cloud);
-  const Eigen::Vector3d from = pcd ? pcd_viewpoint(cloud) : Eigen::Vector3d::Zero();
   OutputFile file(path);
   file.write(pcd ? pcd_header(cloud, layout) : ply_header(cloud, layout));
   std::string bytes;
   bytes.reserve(kBuffer + 256);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    append_point(bytes, cloud, i, layout, pcd, from);
+    append_point(bytes, cloud, i, layout, pcd);
     if (bytes.size() < kBuffer) continue;
     file.write(bytes);
     bytes.clear();

@@ -10,7 +10,7 @@ namespace landmarkdb {
 // height and viewpoint): x y z as float, or as double where the cloud has an origin; normals and
 // colours where it has them. Viewpoints go into "comment viewpoint x y z" lines of the PLY header,
 // several with a viewpoint number a point, and read_cloud reads them back; a PCD keeps a single
-// one, and its points then are relative to it. Throws Error{kResourceExhausted} on a full disk,
+// one. Throws Error{kResourceExhausted} on a full disk,
 // Error{kInvalidArgument} on a path that cannot be written.
 void write_cloud(const std::filesystem::path& path, const PointCloud& cloud);
 
