@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
+
+#include "engine/cloud/voxel_cells.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -40,19 +44,98 @@ Bulk measure_bulk(std::span<const Eigen::Vector3f> points) {
   return bulk;
 }
 
+// Not of what is not finite: no comparison with NaN is true.
+bool is_within(const Eigen::Vector3f& p, const Eigen::Vector3d& centre, double most_m) {
+  const Eigen::Array3d apart = (p.cast<double>() - centre).array().abs();
+  return apart.x() <= most_m && apart.y() <= most_m && apart.z() <= most_m;
+}
+
+// Points in the cell and the 26 around it.
+std::size_t points_around(const VoxelCells& cells, const VoxelCell& own) {
+  std::size_t count = 0;
+  for (int row = 0; row < 9; ++row) {
+    const std::int64_t y = own.y + row % 3 - 1;
+    const std::int64_t z = own.z + row / 3 - 1;
+    for (const VoxelCell& cell : find_row(cells, own.x - 1, own.x + 1, y, z)) {
+      count += cell.end - cell.begin;
+    }
+  }
+  return count;
+}
+
+double distance_to(const Eigen::Vector3f& p, const Eigen::Vector3d& centre) {
+  return (p.cast<double>() - centre).norm();
+}
+
+// Adds to `alone` what of the points kept[far[..]] up to twice as far out as `from_m` has hardly
+// another around; those a little further out count as company.
+void find_alone(std::span<const Eigen::Vector3f> points,
+                const Eigen::Vector3d& centre,
+                double from_m,
+                const std::vector<std::uint32_t>& kept,
+                const std::vector<std::uint32_t>& far,
+                std::vector<std::uint32_t>& alone,
+                const RunContext& context) {
+  constexpr double kAround = 0.05;  // of the way: what a 16-line laser sees there is denser
+  constexpr double kShell = 2.0, kCompany = 1.2;
+  constexpr std::size_t kFewest = 4;
+  std::vector<Eigen::Vector3f> shell;
+  std::vector<std::uint32_t> place;  // in `kept`
+  for (const std::uint32_t k : far) {
+    const Eigen::Vector3f& p = points[kept[k]];
+    if (distance_to(p, centre) >= kCompany * kShell * from_m) continue;
+    shell.push_back(p);
+    place.push_back(k);
+  }
+  const VoxelCells cells = group_by_voxel(shell, kAround * from_m, context);
+  for (const VoxelCell& cell : cells.cells) {
+    if (cell.end - cell.begin >= kFewest || points_around(cells, cell) >= kFewest) continue;
+    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+      const std::uint32_t at = cells.order[i];
+      if (distance_to(shell[at], centre) < kShell * from_m) alone.push_back(place[at]);
+    }
+  }
+}
+
 }  // namespace
 
-bool Reach::holds(const Eigen::Vector3f& p) const {
-  const Eigen::Array3d apart = (p.cast<double>() - centre).array().abs();
-  return apart.x() <= far_m && apart.y() <= far_m && apart.z() <= far_m;  // no comparison with NaN
-}
+bool Reach::holds(const Eigen::Vector3f& p) const { return is_within(p, centre, far_m); }
+
+bool Reach::holds_at_hand(const Eigen::Vector3f& p) const { return is_within(p, centre, near_m); }
 
 Reach measure_reach(std::span<const Eigen::Vector3f> points) {
   // Of a room 30 km: a scan reaches less far, and the grids of voxels a little further.
   constexpr double kFarExtents = 3e3;
   constexpr double kFarAtLeast_m = 100.0;
+  constexpr double kNearExtents = 4.0;  // of a frame of a room some 12 m
   const Bulk bulk = measure_bulk(points);
-  return {bulk.centre, std::max(kFarAtLeast_m, kFarExtents * bulk.extent_m)};
+  return {bulk.centre,
+          std::max(kFarAtLeast_m, kFarExtents * bulk.extent_m),
+          kNearExtents * bulk.extent_m};
+}
+
+std::size_t drop_far_alone(std::span<const Eigen::Vector3f> points,
+                           const Reach& reach,
+                           std::vector<std::uint32_t>& kept,
+                           const RunContext& context) {
+  constexpr std::size_t kFewestOfBulk = 100;  // in fewer points none is a bulk
+  if (!(reach.near_m > 0.0) || kept.size() < kFewestOfBulk) return 0;
+  std::vector<std::uint32_t> far;  // places in `kept`
+  for (std::uint32_t k = 0; k < kept.size(); ++k) {
+    if (!reach.holds_at_hand(points[kept[k]])) far.push_back(k);
+  }
+  // Shell by shell, each twice as far as the last, as surface is seen the more thinly the farther
+  // it is.
+  std::vector<std::uint32_t> alone;
+  for (double from_m = reach.near_m; !far.empty(); from_m *= 2.0) {
+    find_alone(points, reach.centre, from_m, kept, far, alone, context);
+    std::erase_if(far, [&](std::uint32_t k) {
+      return distance_to(points[kept[k]], reach.centre) < 2.0 * from_m;
+    });
+  }
+  constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
+  for (const std::uint32_t k : alone) kept[k] = kDropped;
+  return alone.empty() ? 0 : std::erase(kept, kDropped);
 }
 
 }  // namespace landmarkdb

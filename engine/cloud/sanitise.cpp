@@ -185,6 +185,7 @@ CloudCounts sanitise(PointCloud& cloud, const RunContext& context) {
     }
   }
   counts.duplicates = drop_repeats(cloud.points, kept, context);
+  counts.out_of_range += drop_far_alone(cloud.points, reach, kept, context);
   counts.used = kept.size();
   keep_points(cloud, kept);
   repair_normals(cloud, context);

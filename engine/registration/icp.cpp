@@ -7,6 +7,7 @@
 
 #include "engine/geometry/pose.hpp"
 #include "engine/registration/plane_pairs.hpp"
+#include "engine/registration/spread.hpp"
 
 namespace landmarkdb {
 
@@ -50,18 +51,6 @@ Vector6d solve_observable(const Matrix6d& A, const Vector6d& b, double length) {
   return s.asDiagonal() * x;
 }
 
-Eigen::Vector3d centroid(std::span<const Eigen::Vector3f> points) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& p : points) sum += p.cast<double>();
-  return points.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(points.size()));
-}
-
-double radius_of_gyration(std::span<const Eigen::Vector3f> points, const Eigen::Vector3d& centre) {
-  double sum = 0.0;
-  for (const Eigen::Vector3f& p : points) sum += (p.cast<double>() - centre).squaredNorm();
-  return points.empty() ? 1.0 : std::sqrt(sum / static_cast<double>(points.size()));
-}
-
 }  // namespace
 
 IcpResult refine_icp(const SurfaceGrid& target,
@@ -69,8 +58,9 @@ IcpResult refine_icp(const SurfaceGrid& target,
                      std::span<const Eigen::Vector3f> source_normals,
                      const Eigen::Isometry3d& T_target_source,
                      const IcpOptions& options) {
-  const Eigen::Vector3d centre_source = centroid(source);
-  const double length = std::max(radius_of_gyration(source, centre_source), 1e-9);
+  const Spread spread = measure_spread(source);
+  const Eigen::Vector3d centre_source = spread.centre;
+  const double length = std::max(spread.radius_m, 1e-9);
   const double cell = target.cell_m();
   IcpResult result;
   result.T_target_source = T_target_source;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/registration/spread.hpp"
 #include "engine/retrieval/object_evidence.hpp"
 #include "engine/retrieval/rank_poses.hpp"
 
@@ -18,15 +19,6 @@ constexpr std::size_t kCoarseLook = 1000;  // a third of which can be seen
 
 Eigen::Isometry3d turned(const Eigen::Isometry3d& T, bool inverse) {
   return inverse ? T.inverse() : T;
-}
-
-double extent_of(std::span<const Eigen::Vector3f> points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& p : points) mean += p.cast<double>();
-  mean /= static_cast<double>(std::max<std::size_t>(points.size(), 1));
-  double sum = 0.0;
-  for (const Eigen::Vector3f& p : points) sum += (p.cast<double>() - mean).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(points.size(), 1)));
 }
 
 // Few points prove little: a coarse entry's surface is near anything. The shares are drawn towards
@@ -199,7 +191,7 @@ void assess_fine(const Meeting& meeting,
   if (meeting.entry_is_source) {
     refine_seen(meeting, query, assessed);
     evidence.observability =
-        observability(assessed.icp, extent_of(meeting.source), meeting.source.size());
+        observability(assessed.icp, measure_spread(meeting.source).radius_m, meeting.source.size());
     look_at_object(meeting, entry, query, meeting.source.size(), assessed);
     evidence.outgrown = outgrown_share(meeting, entry, assessed.T_entry_sensor);
     evidence.continued = continued_share(meeting, entry, assessed.T_entry_sensor);
@@ -207,7 +199,7 @@ void assess_fine(const Meeting& meeting,
   }
   if (!meeting.precise.empty()) refine_precisely(meeting, assessed);
   evidence.observability = observability(paired_at(meeting, assessed.T_entry_sensor),
-                                         extent_of(meeting.source),
+                                         measure_spread(meeting.source).radius_m,
                                          meeting.source.size());
   judge_by_wide_surface(meeting, entry, query, some_judges(meeting, kFinePoints), assessed);
 }

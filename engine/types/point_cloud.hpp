@@ -42,7 +42,7 @@ struct CloudCounts {
   std::size_t points = 0;        // as given
   std::size_t not_finite = 0;    // NaN or infinite, dropped
   std::size_t duplicates = 0;    // same position as an earlier one, dropped
-  std::size_t out_of_range = 0;  // further from the bulk than any scan reaches, dropped
+  std::size_t out_of_range = 0;  // further off than any scan reaches, or far off and alone
   std::size_t used = 0;          // what was left
 
   std::size_t invalid() const { return points - used; }

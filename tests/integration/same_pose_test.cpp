@@ -194,6 +194,33 @@ TEST_F(SamePose, OfACloudInMillimetres) {
   }
 }
 
+TEST_F(SamePose, OfACloudWithAFewPointsFarOff) {
+  const ServerProcess server(db_);
+  const std::vector<Eigen::Isometry3d> plain = plain_poses(server);
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    PointCloud cloud = views_[i].cloud;
+    cloud.width = cloud.height = 0;
+    Random random(i);
+    const auto anywhere = [&](double within_m) {
+      Eigen::Vector3d p;
+      for (int axis = 0; axis < 3; ++axis) p[axis] = random.uniform(-within_m, within_m);
+      return p;
+    };
+    for (const double away_m : {100.0, 300.0, 1000.0, 5000.0, 20'000.0}) {
+      cloud.points.push_back(anywhere(away_m).cast<float>());
+    }
+    for (int k = 0; k < 12; ++k) {  // a flock of birds
+      cloud.points.push_back((Eigen::Vector3d(80, 120, 100) + anywhere(0.5)).cast<float>());
+    }
+    cloud.normals.clear();
+    cloud.colours.clear();
+    cloud.viewpoint_index.clear();
+    EXPECT_THAT(ask(server, "plain", write("far.ply", cloud)),
+                PoseNear(plain[i], kEqual_m, kEqual_rad))
+        << i;
+  }
+}
+
 TEST_F(SamePose, OfASensorHeldUpsideDownWithAndWithoutGravity) {
   const Eigen::Isometry3d T_turned_sensor(
       Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitZ()));
@@ -222,12 +249,15 @@ TEST_F(SamePose, OfACloudInCoordinatesOfItsOwn) {
   const ServerProcess server(db_);
   const std::vector<Eigen::Isometry3d> plain = plain_poses(server);
   for (std::size_t i = 0; i < views_.size(); ++i) {
-    const std::string with_viewpoint = write("own.ply", surveyed(views_[i].cloud));
+    for (const char* name : {"own.ply", "own.pcd"}) {
+      const std::string with_viewpoint = write(name, surveyed(views_[i].cloud));
+      const Eigen::Matrix4d T_own = ask(server, "plain", with_viewpoint);
+      EXPECT_THAT(T_own * shift(kSurvey_m).matrix(), PoseNear(plain[i], kEqual_m, kEqual_rad))
+          << i << ' ' << name;
+    }
     PointCloud bare = surveyed(views_[i].cloud);
     bare.viewpoints.clear();
     const std::string without = write("bare.ply", bare);
-    const Eigen::Matrix4d T_own = ask(server, "plain", with_viewpoint);
-    EXPECT_THAT(T_own * shift(kSurvey_m).matrix(), PoseNear(plain[i], kEqual_m, kEqual_rad)) << i;
     const Eigen::Matrix4d T_both =
         ask(server, "surveyed", without, {"--viewpoint", text(kSurvey_m)});
     EXPECT_THAT(shift(-kSurvey_m).matrix() * T_both * shift(kSurvey_m).matrix(),

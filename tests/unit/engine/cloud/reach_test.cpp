@@ -1,6 +1,9 @@
 #include "engine/cloud/reach.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -24,6 +27,53 @@ TEST(MeasureReach, IsAHundredMetresForASpot) {
   EXPECT_TRUE(reach.holds({100.5F, 2, 3}));
   EXPECT_FALSE(reach.holds({1, 2, -98}));
   EXPECT_FALSE(reach.holds({std::numeric_limits<float>::quiet_NaN(), 2, 3}));
+}
+
+std::vector<std::uint32_t> all_of(const std::vector<Eigen::Vector3f>& points) {
+  std::vector<std::uint32_t> all(points.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return all;
+}
+
+TEST(DropFarAlone, KeepsWhatIsAtHandHoweverThin) {
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 300; ++i) points.emplace_back(static_cast<float>(i), 0.0F, 0.0F);
+  std::vector<std::uint32_t> kept = all_of(points);
+  EXPECT_EQ(drop_far_alone(points, measure_reach(points), kept, {}), 0U);
+  EXPECT_EQ(kept, all_of(points));
+}
+
+TEST(DropFarAlone, AsksForCompanyByTheWayThere) {
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 1000; ++i) {
+    points.emplace_back(
+        static_cast<float>(i % 10), static_cast<float>(i / 10 % 10), static_cast<float>(i / 100));
+  }
+  const auto with_row = [&](float away, float apart) {
+    std::vector<Eigen::Vector3f> more = points;
+    for (int i = 0; i < 8; ++i) more.emplace_back(away, apart * static_cast<float>(i), 0.0F);
+    std::vector<std::uint32_t> kept = all_of(more);
+    const std::size_t dropped = drop_far_alone(more, measure_reach(more), kept, {});
+    EXPECT_EQ(kept.size(), more.size() - dropped);
+    EXPECT_TRUE(std::ranges::is_sorted(kept));
+    return dropped;
+  };
+  EXPECT_EQ(with_row(100.0F, 1.0F), 0U);
+  EXPECT_EQ(with_row(100.0F, 30.0F), 8U);
+  EXPECT_EQ(with_row(1000.0F, 10.0F), 0U);
+  EXPECT_EQ(with_row(1000.0F, 300.0F), 8U);
+}
+
+TEST(DropFarAlone, NothingIsFarFromASpotOrAHandful) {
+  for (const int count : {50, 200}) {
+    std::vector<Eigen::Vector3f> points;
+    for (int i = 0; i < count; ++i) {
+      points.emplace_back(count < 100 ? static_cast<float>(i) : 1.0F, 2.0F, 3.0F);
+    }
+    points.emplace_back(1.0F, 900.0F, 3.0F);
+    std::vector<std::uint32_t> kept = all_of(points);
+    EXPECT_EQ(drop_far_alone(points, measure_reach(points), kept, {}), 0U) << count;
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "engine/base/error.hpp"
+#include "tests/unit/engine/cloud/shapes.hpp"
 
 namespace landmarkdb {
 namespace {
@@ -63,9 +64,22 @@ TEST(Sanitise, DropsALonePointFarOutsideOfARoom) {
     EXPECT_EQ(sanitise(cloud).out_of_range, 1U) << away;
     EXPECT_EQ(cloud.size(), 20U);
   }
-  PointCloud cloud = line_of_points(20);
-  cloud.points.emplace_back(5000.0F, 1.0F, 2.0F);  // as far as a long-range scanner sees
-  EXPECT_EQ(sanitise(cloud).used, 21U);
+}
+
+TEST(Sanitise, KeepsAFarSurfaceAndDropsWhatIsAloneThere) {
+  for (const float away : {150.0F, 1000.0F, 5000.0F}) {  // as far as a long-range scanner sees
+    PointCloud cloud = testing::make_room({5, 4, 3}, 0.1F);
+    const std::size_t room = cloud.size();
+    for (int i = 0; i < 40; ++i) {
+      cloud.points.emplace_back(
+          away, 0.02F * away * static_cast<float>(i / 8), 0.01F * away * static_cast<float>(i % 8));
+    }
+    cloud.points.emplace_back(1.0F, away, 2.0F);
+    cloud.points.emplace_back(1.0F, 2.0F, -away);
+    cloud.points.emplace_back(1.0F, 2.0F, -1.01F * away);
+    EXPECT_EQ(sanitise(cloud).out_of_range, 3U) << away;
+    EXPECT_EQ(cloud.size(), room + 40U) << away;
+  }
 }
 
 TEST(Sanitise, SurvivesACloudWithNothingInIt) {
