@@ -62,6 +62,7 @@ Hypothesis hypothesis(const v1::Hypothesis& h) {
              .refuted = h.fit().refuted(),
              .observability = h.fit().observability()};
   out.covariance = matrix<6>(h.covariance(), "covariance");
+  out.rival = h.rival();
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/table.hpp"
+#include "engine/base/print.hpp"
 #include "engine/geometry/pose.hpp"
 
 namespace landmarkdb::client {
@@ -18,15 +19,6 @@ using Json = nlohmann::ordered_json;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 // Log-odds that are worth a word: a confidence of 0.5 becomes 0.56.
 constexpr double kWorthAWord = 0.25;
-
-// printf into a string; the format is always a literal of this file.
-template <typename... Args>
-std::string print(const char* format, Args... args) {
-  const int length = std::snprintf(nullptr, 0, format, args...);
-  std::string out(static_cast<std::size_t>(length > 0 ? length : 0), '\0');
-  std::snprintf(out.data(), out.size() + 1, format, args...);
-  return out;
-}
 
 Json steps_json(const std::vector<FunnelStep>& steps) {
   Json out = Json::array();

@@ -61,6 +61,7 @@ Json hypothesis_json(const Hypothesis& h) {
                 {"refuted", h.fit.refuted},
                 {"agreeing", h.fit.agreeing}};
   out["covariance"] = covariance_json(h.covariance);
+  out["rival"] = h.rival;
   out["scene_version"] = h.scene_version;
   return out;
 }

@@ -1,25 +1,17 @@
 #include "client/render_recognition.hpp"
 
-#include <cstdio>
-
 #include <nlohmann/json.hpp>
 
 #include "cli/model_view.hpp"
 #include "cli/table.hpp"
 #include "client/pose_values.hpp"
+#include "engine/base/print.hpp"
 #include "engine/geometry/pose.hpp"
 
 namespace landmarkdb::client {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 Json hypothesis_json(const MonoHypothesis& h, std::size_t image_points) {
   const Eigen::Matrix3d R = h.T_camera_object.linear();
@@ -55,22 +47,22 @@ std::string hypothesis_text(const MonoHypothesis& h) {
   const Eigen::Vector3d t = h.T_camera_object.translation();
   const Eigen::Vector3d angles = euler_zyx_deg(h.T_camera_object.linear());
   std::string text =
-      "  pose        " + formatted("x %.4f  y %.4f  z %.4f m   about z %.2f  y %.2f  x %.2f deg\n",
-                                   t.x(),
-                                   t.y(),
-                                   t.z(),
-                                   angles.x(),
-                                   angles.y(),
-                                   angles.z());
-  text += "  matched     " + formatted("%zu of %zu visible points (%zu in all), rms %.2f px\n",
-                                       h.pairs.size(),
-                                       h.visible_points,
-                                       h.model_points,
-                                       h.rms_px);
-  text += "  evidence    " + formatted("log10 false alarms %.1f, edges %.2f, margin %.2f\n",
-                                       h.log10_nfa,
-                                       h.edge_share,
-                                       h.margin);
+      "  pose        " + print("x %.4f  y %.4f  z %.4f m   about z %.2f  y %.2f  x %.2f deg\n",
+                               t.x(),
+                               t.y(),
+                               t.z(),
+                               angles.x(),
+                               angles.y(),
+                               angles.z());
+  text += "  matched     " + print("%zu of %zu visible points (%zu in all), rms %.2f px\n",
+                                   h.pairs.size(),
+                                   h.visible_points,
+                                   h.model_points,
+                                   h.rms_px);
+  text += "  evidence    " + print("log10 false alarms %.1f, edges %.2f, margin %.2f\n",
+                                   h.log10_nfa,
+                                   h.edge_share,
+                                   h.margin);
   if (h.symmetry != "none") {
     text += "  symmetry    " + cli::printable(h.symmetry) +
             ": poses that differ by it are this same answer\n";
@@ -113,11 +105,11 @@ std::string recognition_text(const RecognizeResult& result) {
     const MonoHypothesis& h = result.hypotheses[i];
     const bool first = i == 0 && result.status == RecognizeStatus::kRecognized;
     text += (first ? "recognized: model " : "also: model ") + cli::printable(h.model) +
-            formatted(", confidence %.2f\n", h.confidence) + hypothesis_text(h);
+            print(", confidence %.2f\n", h.confidence) + hypothesis_text(h);
   }
-  text += formatted("  image       %zu feature points, %.1f ms\n",
-                    result.image_points,
-                    result.timings.total.count());
+  text += print("  image       %zu feature points, %.1f ms\n",
+                result.image_points,
+                result.timings.total.count());
   for (const std::string& warning : result.warnings) {
     text += "  warning     " + cli::printable(warning) + "\n";
   }

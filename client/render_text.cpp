@@ -1,6 +1,6 @@
 #include "client/render_text.hpp"
 
-#include <cstdio>
+#include <algorithm>
 #include <numbers>
 #include <string_view>
 #include <utility>
@@ -8,21 +8,13 @@
 #include "cli/table.hpp"
 #include "client/render_explanation.hpp"
 #include "client/render_json.hpp"
+#include "engine/base/print.hpp"
 #include "engine/geometry/pose.hpp"
 
 namespace landmarkdb::client {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-// printf into a string; the format is always a literal of this file.
-template <typename... Args>
-std::string print(const char* format, Args... args) {
-  const int length = std::snprintf(nullptr, 0, format, args...);
-  std::string out(static_cast<std::size_t>(length > 0 ? length : 0), '\0');
-  std::snprintf(out.data(), out.size() + 1, format, args...);
-  return out;
-}
 
 std::string pose_text(const Eigen::Matrix4d& T) {
   const Eigen::Vector3d t = T.topRightCorner<3, 1>();
@@ -41,7 +33,7 @@ std::string place_text(const Hypothesis& h) {
   std::string out = "scene " + cli::printable(h.scene);
   if (h.scene_version > 0) out += print(" (version %lld)", static_cast<long long>(h.scene_version));
   if (h.landmark) out += ", landmark " + cli::printable(*h.landmark);
-  return out + print(", confidence %.2f", h.confidence);
+  return out + print(", confidence %.2f%s", h.confidence, h.rival ? ", a rival of the first" : "");
 }
 
 std::string details_text(const Hypothesis& h) {
@@ -116,6 +108,16 @@ std::string_view warning_meaning(std::string_view warning) {
   return {};
 }
 
+std::string ambiguity_text(std::span<const Hypothesis> hypotheses) {
+  const auto rivals = std::count_if(
+      hypotheses.begin(), hypotheses.end(), [](const Hypothesis& h) { return h.rival; });
+  if (rivals > 0) {
+    return print("%lld poses explain the cloud about equally well",
+                 static_cast<long long>(rivals) + 1);
+  }
+  return "the pose cannot be told from others (--explain says from which)";
+}
+
 std::string query_text(const QueryResult& result) {
   std::string out(status_name(result.status));
   if (result.status == QueryStatus::kNotFound) {
@@ -124,10 +126,10 @@ std::string query_text(const QueryResult& result) {
         "  hint        is the place indexed (landmarkdb scene list), are the units right "
         "(--units),\n";
     out +=
-        "              does the cloud see more than a wall? --min-confidence accepts weaker "
-        "answers\n";
+        "              does the cloud see more than a wall? --explain says what was missing, and "
+        "what would do\n";
   } else if (result.status == QueryStatus::kAmbiguous) {
-    out += print(": %zu poses explain the cloud about equally well\n", result.hypotheses.size());
+    out += ": " + ambiguity_text(result.hypotheses) + "\n";
   } else if (!result.hypotheses.empty()) {
     out += ": " + place_text(result.hypotheses.front()) + "\n";
     out += details_text(result.hypotheses.front());

@@ -160,6 +160,7 @@ v1::Hypothesis hypothesis_message(const Hypothesis& hypothesis) {
   fit.set_coverage(hypothesis.fit.coverage);
   fit.set_quality(hypothesis.fit.quality);
   add_row_major(hypothesis.covariance, *message.mutable_covariance());
+  message.set_rival(hypothesis.rival);
   return message;
 }
 

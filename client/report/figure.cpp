@@ -5,6 +5,7 @@
 #include "client/report/markup.hpp"
 #include "client/report/picture.hpp"
 #include "client/report/sections.hpp"
+#include "engine/base/print.hpp"
 
 namespace landmarkdb::client {
 namespace {

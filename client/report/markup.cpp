@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/print.hpp"
+
 namespace landmarkdb::client {
 namespace {
 

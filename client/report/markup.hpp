@@ -1,19 +1,9 @@
 #pragma once
 
-#include <cstdio>
 #include <string>
 #include <vector>
 
 namespace landmarkdb::client {
-
-// printf into a string; the format is always a literal, the arguments numbers.
-template <typename... Args>
-std::string print(const char* format, Args... args) {
-  const int length = std::snprintf(nullptr, 0, format, args...);
-  std::string out(static_cast<std::size_t>(length > 0 ? length : 0), '\0');
-  std::snprintf(out.data(), out.size() + 1, format, args...);
-  return out;
-}
 
 // A table whose cells are HTML already; columns whose title begins with '#' hold numbers.
 class HtmlTable {

@@ -8,6 +8,7 @@
 #include "client/report/html.hpp"
 #include "client/report/markup.hpp"
 #include "client/report/sections.hpp"
+#include "engine/base/print.hpp"
 #include "engine/geometry/pose.hpp"
 
 namespace landmarkdb::client {

@@ -5,6 +5,7 @@
 #include "client/report/html.hpp"
 #include "client/report/markup.hpp"
 #include "client/report/sections.hpp"
+#include "engine/base/print.hpp"
 #include "engine/geometry/pose.hpp"
 
 namespace landmarkdb::client {
@@ -15,8 +16,7 @@ std::string headline(const QueryResult& result) {
     case QueryStatus::kLocalized:
       return "\u2713 Localized in " + html_name(result.hypotheses.at(0).scene);
     case QueryStatus::kAmbiguous:
-      return "\u2248 Ambiguous: " + std::to_string(result.hypotheses.size()) +
-             " poses explain the cloud about equally well";
+      return "\u2248 Ambiguous: " + ambiguity_text(result.hypotheses);
     case QueryStatus::kNotFound:
       return "\u2717 Not found";
   }

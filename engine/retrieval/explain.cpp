@@ -2,24 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <utility>
 
+#include "engine/base/print.hpp"
 #include "engine/geometry/pose.hpp"
 #include "engine/retrieval/hypothesis.hpp"
 
 namespace landmarkdb {
 
 namespace {
-
-template <typename... Args>
-std::string print(const char* format, Args... args) {
-  const int length = std::snprintf(nullptr, 0, format, args...);
-  std::string out(static_cast<std::size_t>(length > 0 ? length : 0), '\0');
-  std::snprintf(out.data(), out.size() + 1, format, args...);
-  return out;
-}
 
 bool filter_used(const QueryOptions& options, Filter filter) {
   if (options.profile != Profile::kPaper) return false;
@@ -103,15 +95,6 @@ std::vector<SceneFunnel> scene_funnels(const Decision& decision) {
   return scenes;
 }
 
-// Two places are rivals where the two alone, whatever their confidence, make an ambiguous answer.
-bool is_rival(const Decision& decision, const Judged& best, const Judged& other) {
-  VerdictOptions options = decision.options;
-  options.min_confidence = 0.0;
-  return judge(
-             {best.pose, other.pose}, decision.input.entries, decision.input.query.centre, options)
-             .status == QueryStatus::kAmbiguous;
-}
-
 ExplainedCandidate candidate_of(const Decision& decision, const Judged& judged) {
   const Hypothesis hypothesis = make_hypothesis(judged, decision.input, decision.search);
   ExplainedCandidate candidate;
@@ -138,8 +121,7 @@ std::vector<ExplainedCandidate> candidates_of(const Decision& decision) {
     if (i == 0) continue;
     ExplainedCandidate& one = candidates.back();
     const ExplainedCandidate& best = candidates.front();
-    one.role =
-        is_rival(decision, judged[0], judged[i]) ? CandidateRole::kRival : CandidateRole::kBehind;
+    one.role = judged[i].rival ? CandidateRole::kRival : CandidateRole::kBehind;
     if (judged[i].pose.entry != judged[0].pose.entry) continue;
     one.distance_m = (one.T_scene_sensor - best.T_scene_sensor).topRightCorner<3, 1>().norm();
     one.turn_rad = rotation_angle_rad(judged[0].pose.T_entry_sensor.linear().transpose() *
@@ -169,9 +151,7 @@ std::string rival_text(std::span<const ExplainedCandidate> candidates) {
 std::string confidence_text(const Decision& decision,
                             std::span<const ExplainedCandidate> candidates) {
   const ExplainedCandidate& best = candidates.front();
-  std::string text = print("the best pose has confidence %.2f, wanted %.2f",
-                           best.confidence,
-                           decision.options.min_confidence);
+  std::string text = "the best pose " + decision.verdict.lacks;
   const std::string rival = rival_text(candidates);
   if (!rival.empty()) text += "; " + rival;
   if (best.terms.empty() || !(best.terms[0].cost > 0.0)) return text;
@@ -199,7 +179,7 @@ Explanation explain(const Decision& decision) {
     case QueryStatus::kAmbiguous:
       explanation.lost_at = "verify";
       explanation.why = rival_text(explanation.candidates);
-      if (explanation.why.empty()) explanation.why = "a rival further down explains it as well";
+      if (explanation.why.empty()) explanation.why = "the best pose " + decision.verdict.lacks;
       break;
     case QueryStatus::kNotFound:
       explanation.lost_at = stage_of(decision.answer.reason);

@@ -151,6 +151,7 @@ Hypothesis make_hypothesis(const Judged& judged,
                     .structure = pose.evidence.structure,
                     .confirmed = pose.evidence.confirmed,
                     .continued = pose.evidence.continued};
+  hypothesis.rival = judged.rival;
   hypothesis.covariance = covariance_of(pose, entry, -input.query.cloud.origin);
   return hypothesis;
 }

@@ -1,9 +1,9 @@
 #include "engine/retrieval/verdict.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
+#include "engine/base/print.hpp"
 #include "engine/retrieval/confidence.hpp"
 
 namespace landmarkdb {
@@ -109,29 +109,80 @@ bool is_sure(const Standing& best, const VerdictOptions& options) {
   return best.judged.confidence >= options.sure_confidence;
 }
 
-// The best pose cannot be told from another, or from itself slid along a wall, or, a bottle's,
-// turned about its axis.
-bool is_rivalled(const Standing& best, const VerdictOptions& options) {
-  const Evidence& evidence = best.judged.pose.evidence;
-  if (evidence.observability <
-      (evidence.of_object ? options.least_observability : options.least_observability_of_place)) {
-    return true;
-  }
-  const double share = best.rival_score / best.judged.pose.score;
-  if (share >= options.rival_share) return true;
-  if (!evidence.of_object || is_sure(best, options)) return false;
+// What of the following is asked of a pose and not reached; empty where all of it is.
+using Lack = std::string;
+
+// The pose cannot be told from itself slid along a wall, or, a bottle's, turned about its axis.
+Lack open_freedom(const Evidence& evidence, const VerdictOptions& options) {
   const double least =
-      share >= options.reach_share ? options.least_contrast_in_reach : options.least_contrast;
-  return evidence.contrast < least;
+      evidence.of_object ? options.least_observability : options.least_observability_of_place;
+  if (evidence.observability >= least) return {};
+  return print(
+      "leaves a freedom open: observability %.4f, wanted %g", evidence.observability, least);
 }
 
-// What is asked of an object's pose however sure it is.
-bool holds_as_object(const Standing& best, const VerdictOptions& options) {
+// The pose cannot be told from another.
+Lack close_rival(const Standing& best, const VerdictOptions& options) {
+  const Evidence& evidence = best.judged.pose.evidence;
+  const double share = best.rival_score / best.judged.pose.score;
+  if (share >= options.rival_share) {
+    return print("has a rival of %.0f %% of its quality, wanted less than %.0f %%",
+                 100.0 * share,
+                 100.0 * options.rival_share);
+  }
+  if (!evidence.of_object || is_sure(best, options)) return {};
+  const double least =
+      share >= options.reach_share ? options.least_contrast_in_reach : options.least_contrast;
+  if (evidence.contrast >= least) return {};
+  return print("has a contrast of %.2f to its rival, wanted %.2f", evidence.contrast, least);
+}
+
+bool is_rivalled(const Standing& best, const VerdictOptions& options) {
+  return !open_freedom(best.judged.pose.evidence, options).empty() ||
+         !close_rival(best, options).empty();
+}
+
+Lack confidence_lack(double confidence, double least, const char* of) {
+  if (confidence >= least) return {};
+  return print("has confidence %.2f, wanted %.2f%s", confidence, least, of);
+}
+
+// Of an object's pose.
+Lack object_lack(const Standing& best, const VerdictOptions& options) {
   const Assessed& pose = best.judged.pose;
-  return best.judged.confidence >= options.least_confidence_of_object &&
-         pose.score >= options.least_score_of_object &&
-         pose.evidence.continued <= options.most_continued &&
-         pose.evidence.contradicted <= options.most_contradicted_of_object;
+  const Evidence& evidence = pose.evidence;
+  const Lack unsure =
+      confidence_lack(best.judged.confidence, options.least_confidence_of_object, " of an object");
+  if (!unsure.empty()) return unsure;
+  if (!(pose.score >= options.least_score_of_object)) {
+    return print(
+        "has quality %.2f, wanted %.2f of an object", pose.score, options.least_score_of_object);
+  }
+  if (!(evidence.continued <= options.most_continued)) {
+    return print(
+        "is of an object whose surface goes on beyond %.0f %% of its outline, wanted at most %.0f "
+        "%%",
+        100.0 * evidence.continued,
+        100.0 * options.most_continued);
+  }
+  if (!(evidence.contradicted <= options.most_contradicted_of_object)) {
+    return print("has %.0f %% of the object's surface contradicted, wanted at most %.0f %%",
+                 100.0 * evidence.contradicted,
+                 100.0 * options.most_contradicted_of_object);
+  }
+  if (is_sure(best, options) || confidence_alone(evidence, pose.score) >= options.least_alone)
+    return {};
+  return "is not believable by its own evidence, however far the others are behind";
+}
+
+// All that is asked, in the order in which it is told.
+Lack lack_of(const Standing& best, const VerdictOptions& options) {
+  const Evidence& evidence = best.judged.pose.evidence;
+  Lack lack = confidence_lack(best.judged.confidence, options.min_confidence, "");
+  if (lack.empty()) lack = open_freedom(evidence, options);
+  if (lack.empty()) lack = close_rival(best, options);
+  if (lack.empty() && evidence.of_object) lack = object_lack(best, options);
+  return lack;
 }
 
 // Whether neither sensor nor scanner looked through much of what a place's pose puts somewhere.
@@ -141,12 +192,17 @@ bool leaves_free_space(const Evidence& evidence, const VerdictOptions& options) 
 }
 
 bool is_taken(const Standing& best, const VerdictOptions& options) {
-  if (is_rivalled(best, options) || best.judged.confidence < options.min_confidence) return false;
-  const Assessed& pose = best.judged.pose;
-  if (!pose.evidence.of_object) return true;
-  if (!holds_as_object(best, options)) return false;
-  return is_sure(best, options) ||
-         confidence_alone(pose.evidence, pose.score) >= options.least_alone;
+  return lack_of(best, options).empty();
+}
+
+// Whether the two alone could not be told apart.
+bool is_rival(const Assessed& best,
+              const Assessed& other,
+              const Entries& entries,
+              const VerdictOptions& options) {
+  const std::vector<Assessed> both{best, other};
+  return rivals(best, other, entries) &&
+         !close_rival(judge_among(0, both, entries), options).empty();
 }
 
 // Whether the pose's own evidence would do, were there no rivals.
@@ -184,17 +240,14 @@ void put_surest_object_first(std::vector<Assessed>& poses, const Entries& entrie
   poses = std::move(sorted);
 }
 
-std::string why_not(const Judged& best) {
-  char text[200];
-  std::snprintf(
-      text,
-      sizeof text,
-      "verify: the best pose explains %.0f %% of the cloud, %.0f %% of what it should see is "
-      "contradicted, confidence %.2f",
-      100.0 * best.pose.evidence.overlap,
-      100.0 * best.pose.evidence.crossed,
-      best.confidence);
-  return text;
+std::string why_not(const Verdict& verdict) {
+  const Evidence& evidence = verdict.judged[0].pose.evidence;
+  return "verify: the best pose " + verdict.lacks +
+         print(
+             "; it explains %.0f %% of the cloud, and %.0f %% of what it should see is "
+             "contradicted",
+             100.0 * evidence.overlap,
+             100.0 * evidence.crossed);
 }
 
 }  // namespace
@@ -222,8 +275,10 @@ Verdict judge(std::vector<Assessed> assessed,
   verdict.judged.push_back(best.judged);
   for (std::size_t i = 1; i < poses.size(); ++i) {
     verdict.judged.push_back(judge_among(i, poses, entries).judged);
+    verdict.judged.back().rival = is_rival(poses[0], poses[i], entries, options);
   }
-  if (is_taken(best, options)) {
+  verdict.lacks = lack_of(best, options);
+  if (verdict.lacks.empty()) {
     verdict.status = QueryStatus::kLocalized;
   } else if (is_rivalled(best, options) &&
              (is_credible_alone(poses[0], options) ||
@@ -231,7 +286,7 @@ Verdict judge(std::vector<Assessed> assessed,
     verdict.status = QueryStatus::kAmbiguous;
   } else {
     verdict.status = QueryStatus::kNotFound;
-    verdict.reason = why_not(verdict.judged[0]);
+    verdict.reason = why_not(verdict);
   }
   return verdict;
 }

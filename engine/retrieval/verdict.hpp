@@ -15,11 +15,13 @@ struct Judged {
   Assessed pose;
   double confidence = 0.0;
   double margin = 0.0;  // 1 - (best different pose's score) / (this one's)
+  bool rival = false;   // it explains the query about as well as the best, which is none itself
 };
 
 struct Verdict {
   QueryStatus status = QueryStatus::kNotFound;
   std::string reason;  // for kNotFound
+  std::string lacks;   // what the best pose was asked and does not reach, if there is one
   std::vector<Judged>
       judged;  // best first; all that explain the query about equally well come first
 };

@@ -113,6 +113,7 @@ struct Hypothesis {
   CorrespondenceCounts counts;
   Fit fit;
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  // x y z rx ry rz
+  bool rival = false;  // explains the query about as well as the best one, which is none itself
 };
 
 // One putative pair of the winning entry, and which filter dropped it ("" = an inlier).

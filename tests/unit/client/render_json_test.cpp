@@ -61,6 +61,7 @@ TEST(QueryJson, HasTheDocumentedKeysInTheDocumentedOrder) {
                           "correspondences",
                           "fit",
                           "covariance",
+                          "rival",
                           "scene_version"));
   EXPECT_THAT(keys(json["hypotheses"][0]["chain"]),
               ElementsAre("T_landmark_sensor", "T_scene_landmark", "T_icp", "scale"));

@@ -33,14 +33,24 @@ TEST(QueryText, SaysWhereInAFewLines) {
 TEST(QueryText, ListsEveryPoseWhenAmbiguous) {
   QueryResult result;
   result.status = QueryStatus::kAmbiguous;
-  result.hypotheses = {in_scene("floor-1", 1.0), in_scene("floor-2", 2.0)};
+  result.hypotheses = {
+      in_scene("floor-1", 1.0), in_scene("floor-2", 2.0), in_scene("floor-3", 3.0)};
+  result.hypotheses[1].rival = true;
   const std::string text = query_text(result);
-  EXPECT_THAT(text, StartsWith("ambiguous: 2 poses"));
+  EXPECT_THAT(text, StartsWith("ambiguous: 2 poses")) << "the third is none of them";
+  EXPECT_THAT(text, HasSubstr("floor-2, confidence 0.88, a rival of the first"));
   EXPECT_THAT(text,
               AllOf(HasSubstr("1. scene floor-1"),
                     HasSubstr("x 1.000"),
                     HasSubstr("2. scene floor-2"),
                     HasSubstr("x 2.000")));
+}
+
+TEST(QueryText, CountsNoRivalsWhereNoneIsListed) {
+  QueryResult result;
+  result.status = QueryStatus::kAmbiguous;
+  result.hypotheses = {in_scene("floor-1", 1.0)};  // --top 1, or a pose that slides
+  EXPECT_THAT(query_text(result), StartsWith("ambiguous: the pose cannot be told from others"));
 }
 
 TEST(QueryText, GivesReasonAndHintWhenNothingWasFound) {

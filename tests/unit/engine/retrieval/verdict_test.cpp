@@ -82,6 +82,18 @@ TEST(Judge, CallsARivalElsewhereAmbiguousAndListsBoth) {
   EXPECT_LT(verdict.judged[0].margin, 0.02);
 }
 
+TEST(Judge, MarksTheRivalsAndNoOther) {
+  const Verdict verdict =
+      judge({good(0, {5, 0, 0}, 0.79), good(0, kZero, 0.8), good(0, {0, 5, 0}, 0.5)},
+            entries(1, 0.05),
+            kZero,
+            {});
+  ASSERT_EQ(verdict.judged.size(), 3U);
+  EXPECT_FALSE(verdict.judged[0].rival) << "the best is none of its own";
+  EXPECT_TRUE(verdict.judged[1].rival);
+  EXPECT_FALSE(verdict.judged[2].rival);
+}
+
 // Two poses that were compared point by point: `contrast` speaks for the first.
 std::vector<Assessed> compared(Assessed best, Assessed rival, float contrast) {
   best.id = 0;
@@ -89,6 +101,21 @@ std::vector<Assessed> compared(Assessed best, Assessed rival, float contrast) {
   best.contrast = {0.0F, contrast};
   rival.contrast = {-contrast, 0.0F};
   return {best, rival};
+}
+
+TEST(Judge, SaysWhatTheBestPoseLacks) {
+  const std::vector<Entry> place = entries(1, 0.05);
+  const auto lacks = [&](std::vector<Assessed> poses) {
+    return judge(std::move(poses), place, kZero, {}).lacks;
+  };
+  Assessed sure = good(0, kZero, 0.8);
+  sure.evidence.agreeing = 300.0;
+  EXPECT_EQ(lacks({sure}), "");
+  EXPECT_THAT(lacks({poor(0, kZero, 0.2)}), HasSubstr("has confidence 0.42, wanted 0.50"));
+  EXPECT_THAT(lacks(compared(sure, good(0, {5, 0, 0}, 0.76), 0.9F)),
+              HasSubstr("rival of 95 % of its quality, wanted less than 93 %"));
+  sure.evidence.observability = 0.004;
+  EXPECT_THAT(lacks({sure}), HasSubstr("observability 0.0040, wanted 0.006"));
 }
 
 TEST(Judge, TakesNoPoseThatHasAnEqualOrSlides) {
