@@ -73,11 +73,31 @@ void check_active_versions(const Database& database, std::vector<std::string>& f
   }
 }
 
-void check_version(const Database& database, const VersionRow& row, CheckReport& report) {
+// Each damaged array of a version; `damage`, the first thing wrong, where it is none of them.
+void note_damage(const Database& database,
+                 const VersionRow& row,
+                 const std::string& damage,
+                 const RunContext& context,
+                 CheckReport& report) {
+  std::vector<std::string> faults;
+  try {
+    faults = array_faults(database, row.segment_id, row.what(), context, report.bytes);
+    report.arrays += read_manifest(database, row.segment_id, row.what()).arrays.size();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kDataLoss && error.code() != ErrorCode::kUnimplemented) throw;
+  }
+  if (faults.empty()) faults.push_back(damage);
+  report.findings.insert(report.findings.end(), faults.begin(), faults.end());
+}
+
+void check_version(const Database& database,
+                   const VersionRow& row,
+                   const RunContext& context,
+                   CheckReport& report) {
   const Transaction snapshot(database, Transaction::Kind::kRead);
   const std::optional<std::string> damage = version_damage(database, row, report.bytes);
   if (damage) {
-    report.findings.push_back(*damage);
+    note_damage(database, row, *damage, context, report);
     return;
   }
   const Manifest manifest = read_manifest(database, row.segment_id, row.what());
@@ -147,7 +167,7 @@ CheckReport check_database(const Database& database, const RunContext& context) 
     for (const VersionRow& row : read_versions(database)) {
       context.report("check", report.bytes, total);
       ++report.versions;
-      collect(report.findings, [&] { check_version(database, row, report); });
+      collect(report.findings, [&] { check_version(database, row, context, report); });
     }
     context.report("check", total, total);
   });

@@ -113,8 +113,9 @@ void mark(const Database& database,
   update.run();
 }
 
-std::string advice_for(const VersionRow& row) {
+std::string advice_for(const Database& database, const VersionRow& row) {
   if (!row.active) return " (it is not the active version)";
+  if (!can_roll_back(database, row.scene_id)) return "; `add` makes a new version";
   return "; `rollback " + row.scene + "` goes back to an earlier version, `add` makes a new one";
 }
 
@@ -128,7 +129,7 @@ void repair_version(const Database& database,
   const std::optional<std::string> damage = version_damage(database, row, bytes);
   bool changed = false;
   if (damage) {
-    report.remaining.push_back(*damage + advice_for(row));
+    report.remaining.push_back(*damage + advice_for(database, row));
     if (row.damage != damage) {
       mark(database, row, damage);
       report.repaired.push_back(row.what() + " is marked as damaged and is not served");

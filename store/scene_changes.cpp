@@ -210,6 +210,11 @@ void rename_scene(const Database& database, std::string_view old_name, std::stri
   transaction.commit();
 }
 
+bool can_roll_back(const Database& database, std::int64_t scene_id) {
+  const std::vector<VersionRow> versions = read_versions(database, scene_id);
+  return version_before_active(versions) != nullptr;
+}
+
 std::int64_t rollback_scene(const Database& database, std::string_view name) {
   Transaction transaction(database, kWrite);
   const std::int64_t scene_id = require_scene_id(database, name);

@@ -35,6 +35,8 @@ void remove_scene(const sqlite::Database& database, std::string_view name);
 void rename_scene(const sqlite::Database& database,
                   std::string_view old_name,
                   std::string_view new_name);
+// Whether there is a version that it could go back to.
+bool can_roll_back(const sqlite::Database& database, std::int64_t scene_id);
 std::int64_t rollback_scene(const sqlite::Database& database, std::string_view name);
 
 void set_tag(const sqlite::Database& database,

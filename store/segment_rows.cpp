@@ -180,6 +180,26 @@ Segment read_segment(const Database& database,
   return segment;
 }
 
+std::vector<std::string> array_faults(const Database& database,
+                                      std::int64_t segment_id,
+                                      const std::string& what,
+                                      const RunContext& context,
+                                      std::uint64_t& bytes) {
+  const Manifest manifest = read_manifest(database, segment_id, what);
+  std::vector<std::string> faults;
+  for (std::size_t i = 0; i < manifest.arrays.size(); ++i) {
+    const ArrayInfo& info = manifest.arrays[i];
+    try {
+      const std::int64_t array_id = find_array(database, segment_id, i, info, what);
+      bytes += read_array(database, array_id, info, what, context).size();
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::kDataLoss) throw;
+      faults.emplace_back(error.what());
+    }
+  }
+  return faults;
+}
+
 Manifest read_manifest(const Database& database, std::int64_t segment_id, const std::string& what) {
   return manifest_from_json(read_segment_row(database, segment_id, what).manifest_json, what);
 }

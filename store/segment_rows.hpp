@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "engine/base/run_context.hpp"
 #include "store/segment.hpp"
@@ -26,6 +27,14 @@ Segment read_segment(const sqlite::Database& database,
                      const std::string& what,
                      const RunContext& context,
                      SceneParts parts = SceneParts::kWhole);
+
+// What is wrong with each array of a segment, where the manifest can be read at all, in its order.
+// `bytes` grows by what was read whole. Throws what read_manifest and `context.check` do.
+std::vector<std::string> array_faults(const sqlite::Database& database,
+                                      std::int64_t segment_id,
+                                      const std::string& what,
+                                      const RunContext& context,
+                                      std::uint64_t& bytes);
 
 // The manifest alone, with its digest checked.
 Manifest read_manifest(const sqlite::Database& database,

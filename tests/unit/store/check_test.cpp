@@ -11,6 +11,7 @@ using sqlite::Database;
 using sqlite::OpenMode;
 using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::make_record;
@@ -74,6 +75,20 @@ TEST_F(CheckDatabase, AFlippedByteIsNamedAndHarmsNoOtherScene) {
   ASSERT_THAT(damaged, SizeIs(1));
   EXPECT_EQ(damaged[0].name, "lobby");
   EXPECT_THAT(damaged[0].what, HasSubstr("descriptors"));
+}
+
+TEST_F(CheckDatabase, EveryDamagedArrayOfAVersionIsNamed) {
+  for (const char* array : {"points", "normals", "descriptors"}) {
+    damage(
+        "UPDATE segment_chunk SET data = CAST(x'55' || substr(data, 2) AS BLOB) WHERE array_id = " +
+        array_of_lobby(array));
+  }
+  const CheckReport report = Store::open_read_only(path_).check({});
+  EXPECT_THAT(report.findings,
+              ElementsAre(HasSubstr("lobby' version 1: array 'points' is damaged"),
+                          HasSubstr("lobby' version 1: array 'normals' is damaged"),
+                          HasSubstr("lobby' version 1: array 'descriptors' is damaged")));
+  EXPECT_EQ(report.arrays, 24U) << "damaged ones are looked at too";
 }
 
 TEST_F(CheckDatabase, ACutOffArrayIsNamedWithItsLengths) {

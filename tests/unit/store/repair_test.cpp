@@ -58,6 +58,16 @@ TEST_F(RepairDatabase, RebuildsWhatIsDerived) {
   EXPECT_EQ(store.show("attic").kind, EntryKind::kPlace);
 }
 
+TEST_F(RepairDatabase, PromisesNoEarlierVersionWhereThereIsNone) {
+  damage(
+      "UPDATE segment_chunk SET data = x'00' WHERE array_id IN "
+      "(SELECT id FROM segment_array WHERE segment_id = 1 AND name = 'points')");
+  const RepairReport report = Store::open_read_write(path_).repair({});
+  ASSERT_EQ(report.remaining.size(), 1U);
+  EXPECT_THAT(report.remaining[0], HasSubstr("attic' version 1"));
+  EXPECT_THAT(report.remaining[0], HasSubstr("; `add` makes a new version"));
+}
+
 TEST_F(RepairDatabase, MarksDamageAndSaysWhatCanBeDone) {
   damage(
       "UPDATE segment_chunk SET data = x'00' WHERE array_id IN "
