@@ -89,6 +89,9 @@ bool LineWindow::next(std::string_view& line) {
     }
     window_.skip(lines.at());
     ++number_;
+    // What Windows programs put before UTF-8 text.
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (number_ == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
     return true;
   }
 }

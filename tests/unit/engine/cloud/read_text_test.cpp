@@ -8,6 +8,7 @@
 namespace landmarkdb {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::parse;
 using ::testing::ThrowsMessage;
@@ -37,6 +38,38 @@ TEST(ReadText, AcceptsCommasTabsSemicolonsAndColumnNames) {
     ASSERT_EQ(cloud.size(), 2U) << file;
     EXPECT_EQ(cloud.points[1], Eigen::Vector3f(4, 5, 6)) << file;
   }
+}
+
+TEST(ReadText, GoesByTheNamesOfColumns) {
+  for (const char* file : {"id,x,y,z\n900001,1,2,3\n900002,4,5,6\n",
+                           "y x z\n2 1 3\n5 4 6\n",
+                           "\xef\xbb\xbf\"Z[m]\";\"Y[m]\";\"X[m]\"\r\n3;2;1\r\n6;5;4\r\n"}) {
+    const PointCloud cloud = parse(file, "a.csv");
+    ASSERT_EQ(cloud.size(), 2U) << file;
+    EXPECT_EQ(cloud.points[1], Eigen::Vector3f(4, 5, 6)) << file;
+  }
+  const PointCloud all =
+      parse("R,G,B,normal_x,normal_y,normal_z,X,Y,Z,time\n1,2,3,0,0,1,7,8,9,0.5\n", "a.csv");
+  EXPECT_EQ(all.points.at(0), Eigen::Vector3f(7, 8, 9));
+  EXPECT_EQ(all.normals.at(0), Eigen::Vector3f(0, 0, 1));
+  EXPECT_EQ(all.colours.at(0), (std::array<std::uint8_t, 3>{1, 2, 3}));
+  EXPECT_TRUE(parse("x y z a b c\n1 2 3 255 0 0\n", "a.csv").colours.empty())
+      << "what has another name is no colour";
+}
+
+TEST(ReadText, RefusesNamesThatDoNotSayWhatIsX) {
+  EXPECT_THAT(
+      [&] { parse("id,range,angle\n1,2,3\n", "a.csv"); },
+      ThrowsMessage<Error>(AllOf(HasSubstr("id, range, angle"), HasSubstr("want x, y and z"))));
+  EXPECT_EQ(parse("Scan of the lobby\n1 2 3\n", "a.xyz").size(), 1U) << "a title";
+}
+
+TEST(ReadText, SkipsAByteOrderMark) {
+  EXPECT_EQ(parse("\xef\xbb\xbf"
+                  "1 2 3\n4 5 6\n",
+                  "a.xyz")
+                .size(),
+            2U);
 }
 
 TEST(ReadText, TellsColoursFromNormals) {
