@@ -1,11 +1,14 @@
 #include "cli/main_guard.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <string>
+#include <vector>
 
+#include <CLI/App.hpp>
 #include <CLI/Error.hpp>
 #include <nlohmann/json.hpp>
 
@@ -23,15 +26,49 @@ struct Failure {
   int status = kExitInternal;
 };
 
-// The subcommand that was being parsed, "landmarkdb-indexer add", for the hint at its --help.
+// The program and the subcommands that were being parsed, outermost first.
+std::vector<const CLI::App*> commands_in_use(const CLI::App& app) {
+  std::vector<const CLI::App*> commands{&app};
+  while (!commands.back()->get_subcommands().empty()) {
+    commands.push_back(commands.back()->get_subcommands().front());
+  }
+  return commands;
+}
+
+// The word that stands where a command is wanted; empty where none does.
+std::string unknown_command(const CLI::App& app) {
+  const CLI::App& last = *commands_in_use(app).back();
+  if (last.get_require_subcommand_min() == 0) return {};
+  const std::vector<std::string> rest = app.remaining(true);
+  const auto word = std::find_if(
+      rest.begin(), rest.end(), [](const std::string& one) { return !one.starts_with('-'); });
+  return word == rest.end() ? std::string() : *word;
+}
+
+// "landmarkdb-indexer add", for the hint at its --help.
 std::string command_in_use(const CLI::App& app) {
-  std::string command = app.get_name();
-  const CLI::App* current = &app;
-  while (!current->get_subcommands().empty()) {
-    current = current->get_subcommands().front();
-    command += ' ' + current->get_name();
+  std::string command;
+  for (const CLI::App* one : commands_in_use(app)) {
+    command += (command.empty() ? "" : " ") + one->get_name();
   }
   return command;
+}
+
+// The option, as it is typed, that gave the field which an error names ("options.min_confidence"),
+// wherever the value was found wrong; empty where none did, or a file did that it names.
+std::string option_of_field(const CLI::App& app, const std::string& field) {
+  std::string name = field.substr(field.rfind('.') + 1);  // npos + 1 is 0
+  std::replace(name.begin(), name.end(), '_', '-');
+  if (!name.starts_with("--")) name = "--" + name;
+  for (const CLI::App* command : commands_in_use(app)) {
+    const CLI::Option* option = command->get_option_no_throw(name);
+    if (option == nullptr || option->count() == 0) continue;
+    const std::string takes = option->get_type_name();
+    if (takes.find("FILE") == std::string::npos && takes.find("PATH") == std::string::npos) {
+      return name;
+    }
+  }
+  return {};
 }
 
 Failure usage_failure(const CLI::App& app, const std::string& what, const std::string& field) {
@@ -46,11 +83,17 @@ Failure failure_in_flight(const CLI::App& app) {
   try {
     throw;
   } catch (const Error& error) {
+    if (error.code() == ErrorCode::kInvalidArgument && !error.field().empty()) {
+      const std::string option = option_of_field(app, error.field());
+      if (!option.empty()) return usage_failure(app, error.what(), option);
+    }
     return {error_code_name(error.code()), error.what(), error.field(), exit_status(error.code())};
   } catch (const UsageError& error) {
     return usage_failure(app, error.what(), error.option());
   } catch (const CLI::Error& error) {
-    return usage_failure(app, error.what(), {});
+    const std::string unknown = unknown_command(app);
+    return usage_failure(
+        app, unknown.empty() ? error.what() : "there is no command '" + unknown + "'", {});
   } catch (const std::bad_alloc&) {
     return {error_code_name(ErrorCode::kInternal), "out of memory", {}, kExitInternal};
   } catch (const std::exception& error) {

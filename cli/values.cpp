@@ -84,6 +84,10 @@ std::vector<double> pose_numbers(std::string_view text, const std::string& sourc
 
 }  // namespace
 
+std::string not_negative(const std::string& text) {
+  return trimmed(text).starts_with('-') ? text + " is below zero" : std::string();
+}
+
 double parse_number(std::string_view text, const std::string& option) {
   const std::optional<double> value = number_in(trimmed(text));
   if (!value) throw UsageError(option, in_quotes(text) + " is not a finite number");

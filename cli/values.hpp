@@ -18,6 +18,10 @@ double parse_number(std::string_view text, const std::string& option);
 // A finite number above zero; lengths in metres.
 double parse_positive(std::string_view text, const std::string& option);
 
+// For an option of whole numbers from zero on, which a number below would wrap to: empty, or what
+// is wrong with the text.
+std::string not_negative(const std::string& text);
+
 // "x,y,z", finite.
 Eigen::Vector3d parse_vector3(std::string_view text, const std::string& option);
 

@@ -116,6 +116,7 @@ void add_method_options(CLI::App& app, QueryArguments& a) {
   app.add_flag("--scale", a.scale, "Estimate the scale too [1]");
   app.add_option("--seed", a.seed, "Same cloud and seed: same answer")
       ->type_name("N")
+      ->check(cli::not_negative)
       ->capture_default_str();
 }
 

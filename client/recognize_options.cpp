@@ -24,6 +24,7 @@ void add_recognize_limits(CLI::App& command, RecognizeLimits& limits) {
                   "Given back in the answer; nothing is drawn at random, so the same image has the "
                   "same answer with any")
       ->type_name("N")
+      ->check(cli::not_negative)
       ->capture_default_str();
 }
 

@@ -99,6 +99,28 @@ TEST(RunMain, CallsWrongUsageWrongUsage) {
   EXPECT_EQ(outcome.err, "prog: --up: 0,0,0 is no direction (see prog go --help)\n");
 }
 
+TEST(RunMain, NamesTheCommandThatIsNotThere) {
+  EXPECT_THAT(run({"goo", "--fast"}, done).err, HasSubstr("there is no command 'goo'"));
+  EXPECT_THAT(run({}, done).err, HasSubstr("subcommand is required"));
+}
+
+// Wherever a value is found wrong: a server may have looked at it.
+TEST(RunMain, CallsAWrongValueOfAnOptionWrongUsage) {
+  const auto fail = []() -> int {
+    throw Error(ErrorCode::kInvalidArgument, "fast is no way to go", "options.fast");
+  };
+  const Outcome given = run({"go", "--fast"}, fail);
+  EXPECT_EQ(given.status, 2);
+  EXPECT_EQ(given.err, "prog: fast is no way to go (see prog go --help)\n");
+  EXPECT_EQ(run({"go"}, fail).status, 7) << "what was not typed is no usage";
+  EXPECT_EQ(run({"go", "--fast"},
+                []() -> int {
+                  throw Error(ErrorCode::kInvalidArgument, "cloud.ply: truncated", "cloud");
+                })
+                .status,
+            7);
+}
+
 TEST(RunMain, GivesUsageErrorsAsJsonToo) {
   const Outcome outcome = run({"go", "--slow", "--json"}, done);
   EXPECT_EQ(outcome.status, 2);
