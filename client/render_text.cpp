@@ -99,7 +99,7 @@ std::string_view warning_meaning(std::string_view warning) {
       {"planar_scene", "mostly one plane: the pose can slide along it"},
       {"density_mismatch", "much coarser than what the scene was described at"},
       {"correspondences_cut", "too many pairs to send; each keypoint's farthest are left out"},
-      {"gravity_disagrees", "the pose tilts the scene against --up"},
+      {"gravity_unknown", "the scene was indexed without --up, so this one says nothing"},
       {"normals_unoriented", "no viewpoint known; normals may point either way"},
   };
   for (const auto& [name, meaning] : kMeanings) {

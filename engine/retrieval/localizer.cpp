@@ -108,6 +108,14 @@ std::vector<bool> wanted_entries(const Entries& entries, const QueryOptions& opt
   return wanted;
 }
 
+// Whether damage, some of it just found, leaves nothing to be looked in.
+bool all_are_damaged(const Entries& entries, const std::vector<bool>& wanted) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (wanted[i] && !entries.is_damaged(i)) return false;
+  }
+  return true;
+}
+
 std::string nothing_left(const SearchResult& search,
                          const CleanQuery& query,
                          const ViewCache& views) {
@@ -126,6 +134,7 @@ std::string nothing_left(const SearchResult& search,
 }
 
 void add_warnings(const CleanQuery& query,
+                  const QueryOptions& options,
                   const Verdict& verdict,
                   const Entries& entries,
                   QueryResult& answer) {
@@ -139,6 +148,9 @@ void add_warnings(const CleanQuery& query,
   constexpr double kDensity = 3.0;
   if (best.evidence.overlap < kLowOverlap) answer.warnings.emplace_back("low_overlap");
   if (best.evidence.observability < kPlanar) answer.warnings.emplace_back("planar_scene");
+  if (options.up && !entries[best.entry].record().up) {
+    answer.warnings.emplace_back("gravity_unknown");
+  }
   answer.query.density_ratio =
       query.scale.spacing_m > 0.0
           ? entries[best.entry].record().options.voxel_m / query.scale.spacing_m
@@ -288,11 +300,14 @@ QueryResult Localizer::query(std::vector<QueryCloud> clouds,
     } else if (!dropped.empty()) {
       answer.reason = "verify: all " + std::to_string(dropped.size()) +
                       " poses contradict the up direction or the prior";
+    } else if (all_are_damaged(entries, wanted)) {
+      answer.reason =
+          "match: all scenes of the database are damaged and not served; `health` says how";
     } else {
       answer.reason = nothing_left(search, query, views);
     }
   }
-  add_warnings(query, verdict, entries, answer);
+  add_warnings(query, options, verdict, entries, answer);
   fill_hypotheses(input, search, verdict, answer);
   if (options.explain) {
     answer.explanation = explain({input, search, dropped, verdict, verdict_options, answer});

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "engine/retrieval/narrow_places.hpp"
 #include "engine/retrieval/scene_index.hpp"
@@ -116,6 +116,16 @@ TEST_F(OnDemand, ASceneThatTurnsOutDamagedHarmsNoOther) {
     ADD_FAILURE() << "no Error was thrown";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kDataLoss);
+  }
+}
+
+TEST_F(OnDemand, SaysSoWhereEverySceneIsDamaged) {
+  const Localizer localizer(on_shelves, {}, {.most_scanned_rows = 1});
+  for (const auto& shelf : shelves) shelf->damaged = true;
+  for (int time = 0; time < 2; ++time) {  // as it is found, and when it is known
+    const QueryResult got = ask(localizer);
+    EXPECT_EQ(got.status, QueryStatus::kNotFound);
+    EXPECT_THAT(got.reason, ::testing::HasSubstr("all scenes of the database are damaged"));
   }
 }
 

@@ -387,6 +387,19 @@ TEST(Localizer, WarnsOfACloudInMillimetres) {
   EXPECT_THAT(answer.warnings, Contains("units_suspect"));
 }
 
+TEST(Localizer, SaysThatGravityIsOfNoUseWhereTheSceneDoesNotKnowItsOwn) {
+  SceneRecord record = lobby().record;
+  record.up.reset();
+  const auto without = localizer_of({record});
+  const Frame frame = frame_in(lobby().scene, 1);
+  QueryOptions options;
+  EXPECT_THAT(without->query(frame.cloud, options, {}).warnings, Not(Contains("gravity_unknown")));
+  options.up = frame.up_sensor;
+  EXPECT_THAT(without->query(frame.cloud, options, {}).warnings, Contains("gravity_unknown"));
+  EXPECT_THAT(lobby().localizer->query(frame.cloud, options, {}).warnings,
+              Not(Contains("gravity_unknown")));
+}
+
 TEST(Localizer, HasNothingToSearchInAnEmptyDatabase) {
   const auto nothing = localizer_of({});
   const QueryResult answer = nothing->query(frame_in(lobby().scene, 1).cloud, {}, {});
