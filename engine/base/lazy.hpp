@@ -9,35 +9,38 @@
 namespace landmarkdb {
 
 // A value that is made when it is first asked for; others who ask meanwhile wait. What making it
-// throws is passed on, and the next one who asks tries again. Thread-safe.
-template <typename Value>
+// throws is passed on, and the next one who asks tries again. Who asks may say how it is to be made
+// (`How`: on how many threads), which must not change what it is. Thread-safe.
+template <typename Value, typename... How>
 class Lazy {
  public:
+  using Make = std::function<Value(How...)>;
+
   // Of a Value{}.
-  Lazy() : Lazy([] { return Value{}; }) {}
+  Lazy() : Lazy(Make([](How...) { return Value{}; })) {}
   // `make` is let go once it has made the value.
-  explicit Lazy(std::function<Value()> make) : state_(std::make_unique<State>(std::move(make))) {}
+  explicit Lazy(Make make) : state_(std::make_unique<State>(std::move(make))) {}
 
   // Stays where it is, whoever holds the Lazy.
-  const Value& get() const {
-    if (!state_->made.load(std::memory_order_acquire)) state_->make_once();
+  const Value& get(How... how) const {
+    if (!state_->made.load(std::memory_order_acquire)) state_->make_once(how...);
     return state_->value;
   }
 
  private:
   struct State {
-    explicit State(std::function<Value()> how) : make(std::move(how)) {}
+    explicit State(Make how) : make(std::move(how)) {}
 
-    void make_once() {
+    void make_once(How... how) {
       const std::lock_guard lock(making);
       if (made.load(std::memory_order_relaxed)) return;
-      value = make();
+      value = make(how...);
       make = nullptr;
       made.store(true, std::memory_order_release);
     }
 
     std::mutex making;
-    std::function<Value()> make;
+    Make make;
     Value value{};
     std::atomic<bool> made{false};
   };

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/base/parallel.hpp"
 #include "engine/base/put_largest_first.hpp"
 
 namespace landmarkdb {
@@ -38,9 +39,11 @@ void halve(std::span<const Eigen::Vector3f> points,
 }
 
 // Halves the points across their longest side until each part is a block; the parts stay in order.
+// Each half has half of the threads.
 void split(std::span<const Eigen::Vector3f> points,
            Order order,
            std::uint32_t begin,
+           int threads,
            std::vector<std::uint64_t>& words,
            std::vector<SightSurface::Block>& blocks) {
   Eigen::AlignedBox3f box;
@@ -58,8 +61,24 @@ void split(std::span<const Eigen::Vector3f> points,
   box.sizes().maxCoeff(&axis);
   const std::size_t half = order.size() / 2;
   halve(points, axis, half, order, words);
-  split(points, order.first(half), begin, words, blocks);
-  split(points, order.subspan(half), begin + static_cast<std::uint32_t>(half), words, blocks);
+  const auto split_half = [&](bool first, int on_threads, auto& own_words, auto& own_blocks) {
+    const Order part = first ? order.first(half) : order.subspan(half);
+    const auto from = begin + static_cast<std::uint32_t>(first ? 0 : half);
+    split(points, part, from, on_threads, own_words, own_blocks);
+  };
+  if (threads < 2) {
+    split_half(true, 1, words, blocks);
+    split_half(false, 1, words, blocks);
+    return;
+  }
+  std::vector<SightSurface::Block> of_second;
+  std::vector<std::uint64_t> words_of_second;
+  parallel_each(2, 2, [&](std::size_t i) {
+    const bool first = i == 0;
+    const int own = first ? (threads + 1) / 2 : threads / 2;
+    split_half(first, own, first ? words : words_of_second, first ? blocks : of_second);
+  });
+  blocks.insert(blocks.end(), of_second.begin(), of_second.end());
 }
 
 // Puts points at least `apart_m` from one another first; returns how many.
@@ -82,20 +101,24 @@ std::uint32_t put_spread_first(std::span<const Eigen::Vector3f> points,
 
 SightSurface::SightSurface(std::span<const Eigen::Vector3f> points,
                            std::span<const Eigen::Vector3f> normals,
-                           double spacing_m) {
+                           double spacing_m,
+                           int threads) {
   assert((normals.empty() || normals.size() == points.size()) && "one normal a point, or none");
   if (points.empty()) return;
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0U);
   std::vector<std::uint64_t> words;
-  split(points, order, 0, words, blocks_);
+  split(points, order, 0, threads, words, blocks_);
   if (spacing_m > 0.0) {
     constexpr double kApart = 1.6;  // spacings: what is left lies about twice as far apart
-    for (Block& block : blocks_) {
-      const Order of_block = Order(order).subspan(block.begin, block.end - block.begin);
-      block.spread_end =
-          block.begin + put_spread_first(points, of_block, static_cast<float>(kApart * spacing_m));
-    }
+    parallel_chunks(blocks_.size(), threads, [&](std::size_t begin, std::size_t end) {
+      for (Block& block : std::span(blocks_).subspan(begin, end - begin)) {
+        const Order of_block = Order(order).subspan(block.begin, block.end - block.begin);
+        block.spread_end =
+            block.begin +
+            put_spread_first(points, of_block, static_cast<float>(kApart * spacing_m));
+      }
+    });
   }
   points_.reserve(points.size());
   for (const std::uint32_t i : order) points_.push_back(points[i]);

@@ -24,10 +24,11 @@ class SightSurface {
 
   SightSurface() = default;
   // `points` in metres, finite; `normals` one a point, or none; `spacing_m` how far the points lie
-  // apart, 0 where none is to be left out. Cost: O(N log N).
+  // apart, 0 where none is to be left out. Cost: O(N log N). The same for any number of threads.
   SightSurface(std::span<const Eigen::Vector3f> points,
                std::span<const Eigen::Vector3f> normals = {},
-               double spacing_m = 0.0);
+               double spacing_m = 0.0,
+               int threads = 1);
 
   std::size_t size() const { return points_.size(); }
   bool has_normals() const { return !normals_.empty(); }

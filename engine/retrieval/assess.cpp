@@ -213,7 +213,7 @@ void assess_precisely(const Meeting& meeting,
                  query,
                  meeting.source,
                  meeting.source_normals,
-                 entry.sight.get(),
+                 entry.sight.get(1),
                  entry.record().prepared.resolution_m,
                  assessed);
 }

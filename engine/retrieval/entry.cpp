@@ -26,12 +26,12 @@ SurfaceGrid grid_of_scene(const SceneRecord& record, const RunContext& context) 
 }
 
 // Objects are small, and seen close by: all of their points count.
-SightSurface sight_of(const SceneRecord& record) {
+SightSurface sight_of(const SceneRecord& record, int threads) {
   const PreparedCloud& cloud = record.prepared;
   const std::span<const Eigen::Vector3f> normals =
       cloud.normals_from_viewpoint ? cloud.normals : std::span<const Eigen::Vector3f>{};
   const bool is_object = record.kind == EntryKind::kObject;
-  return SightSurface(cloud.points, normals, is_object ? 0.0 : cloud.resolution_m);
+  return SightSurface(cloud.points, normals, is_object ? 0.0 : cloud.resolution_m, threads);
 }
 
 std::vector<PlaneLayout> planes_of(const SceneRecord& record) {
@@ -109,7 +109,7 @@ Entry make_entry(CatalogEntry stored, const RunContext& context) {
       .scanned = {},
       .frames =
           is_object ? std::vector<PackedRotation>{} : pack_rotations(record.descriptors.frames),
-      .sight = Lazy<SightSurface>([held] { return sight_of(*held); }),
+      .sight = Lazy<SightSurface, int>([held](int threads) { return sight_of(*held, threads); }),
       .centre = Eigen::Vector3d::Zero(),
       .extent_m = 0.0};
   if (!is_object) {

@@ -31,7 +31,7 @@ struct Entry {
   TestPoints test;                                   // of the entry's own surface, for objects
   ScannedSpace scanned;                              // of places scanned from known viewpoints
   std::vector<PackedRotation> frames;                // of places: the keypoints' local frames
-  Lazy<SightSurface> sight;                          // of the whole surface, for free space
+  Lazy<SightSurface, int> sight;                     // of the whole surface; by so many threads
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean of the points
   double extent_m = 0.0;                             // twice the root mean square distance from it
 

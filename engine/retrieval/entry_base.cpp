@@ -57,7 +57,7 @@ std::vector<bool> tails_kept(const Entries& entries) {
 // An entry that is kept for good, with all that is made when it is asked for.
 std::shared_ptr<const Entry> whole_entry(CatalogEntry stored, const RunContext& context) {
   auto entry = std::make_shared<const Entry>(make_entry(std::move(stored), context));
-  entry->sight.get();
+  entry->sight.get(context.threads);
   entry->planes.get();
   return entry;
 }

@@ -257,7 +257,7 @@ void look_at_object(const Meeting& meeting,
                   evidence);
   measure_closeness(meeting.target, seen, assessed.icp.T_target_source, noise, evidence);
   measure_sight(ranges,
-                entry.sight.get(),
+                entry.sight.get(1),
                 assessed.T_entry_sensor.inverse(),
                 entry.record().prepared.resolution_m,
                 verify,
@@ -298,7 +298,7 @@ double continued_share(const Meeting& meeting,
   OutlineCounts counts;
   for (const RangeImage& image : meeting.ranges) {
     counts += image.outline(
-        entry.sight.get(), T_entry_sensor.inverse(), static_cast<float>(cell_m), tolerance);
+        entry.sight.get(1), T_entry_sensor.inverse(), static_cast<float>(cell_m), tolerance);
   }
   if (counts.measured == 0) return 0.0;
   return closed_share(meeting.source_normals) * static_cast<double>(counts.continued) /

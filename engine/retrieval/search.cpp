@@ -147,6 +147,15 @@ void assess_each(const SearchInput& input,
   });
 }
 
+// Makes what is looked at from these poses, each on all threads: of one place, as a rule, and the
+// poses would wait for one another.
+void make_sight_of(const SearchInput& input, std::span<const Assessed> poses) {
+  for (const Assessed& pose : poses) {
+    input.context.check("verify");
+    input.entries[pose.entry].sight.get(input.context.threads);
+  }
+}
+
 // Poses of places that may turn out the best, or a rival that counts, are assessed to the last;
 // best first, a few at a time, until none of the others is within reach of the best.
 void assess_within_reach(const SearchInput& input,
@@ -167,6 +176,7 @@ void assess_within_reach(const SearchInput& input,
         [&](const Assessed& pose) { return pose.score < kReach * best; });
     const std::span within(poses.begin() + static_cast<std::ptrdiff_t>(first), end);
     if (within.empty()) break;
+    make_sight_of(input, within);
     assess_each(input, meeting_of, result, &assess_precisely, within);
     if (first == 0) best = 0.0;  // as it was assessed less closely
     for (const Assessed& pose : within) best = std::max(best, pose.score);

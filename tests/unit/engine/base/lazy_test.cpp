@@ -49,6 +49,17 @@ TEST(Lazy, TheValueStaysWhereItIsAndWhatMadeItIsLetGo) {
   EXPECT_EQ(moved.get(), 5);
 }
 
+TEST(Lazy, IsMadeAsTheFirstOneSays) {
+  int said = 0;
+  const Lazy<int, int> lazy([&](int threads) {
+    said = threads;
+    return 7;
+  });
+  EXPECT_EQ(lazy.get(3), 7);
+  EXPECT_EQ(lazy.get(5), 7);
+  EXPECT_EQ(said, 3);
+}
+
 TEST(Lazy, OfNothingIsAnEmptyValue) { EXPECT_EQ(Lazy<std::string>().get(), ""); }
 
 }  // namespace

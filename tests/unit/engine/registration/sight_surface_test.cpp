@@ -54,6 +54,24 @@ TEST(SightSurface, BlocksAreSmallAgainstTheWhole) {
   for (const SightSurface::Block& block : surface.blocks()) EXPECT_LT(block.radius_m, 2.0F);
 }
 
+TEST(SightSurface, IsTheSameForAnyNumberOfThreads) {
+  const std::vector<Eigen::Vector3f> points = random_points(5000);
+  const SightSurface alone(points, points, 0.1, 1);
+  for (const int threads : {2, 3, 8}) {
+    const SightSurface together(points, points, 0.1, threads);
+    EXPECT_TRUE(std::ranges::equal(together.points(), alone.points())) << threads;
+    EXPECT_TRUE(std::ranges::equal(together.normals(), alone.normals())) << threads;
+    EXPECT_TRUE(std::ranges::equal(together.blocks(),
+                                   alone.blocks(),
+                                   [](const auto& a, const auto& b) {
+                                     return a.begin == b.begin && a.end == b.end &&
+                                            a.spread_end == b.spread_end && a.centre == b.centre &&
+                                            a.radius_m == b.radius_m;
+                                   }))
+        << threads;
+  }
+}
+
 TEST(SightSurface, KeepsTheNormalsBesideTheirPoints) {
   const std::vector<Eigen::Vector3f> points = random_points(700);
   std::vector<Eigen::Vector3f> normals;

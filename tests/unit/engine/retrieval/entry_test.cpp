@@ -42,7 +42,7 @@ TEST(MakeEntry, DerivesWhatTheSearchNeedsFromTheRecord) {
   EXPECT_TRUE(entry.is_object());
   EXPECT_EQ(entry.grid.cell_m(), 0.05F);
   EXPECT_EQ(entry.grid.surfels().size(), corner.points.size());
-  EXPECT_EQ(entry.sight.get().size(), corner.points.size());
+  EXPECT_EQ(entry.sight.get(1).size(), corner.points.size());
   EXPECT_GT(entry.extent_m, 1.5);
   EXPECT_LT(entry.extent_m, 5.2);  // the corner's diagonal
   EXPECT_LT((entry.centre - Eigen::Vector3d::Constant(1.0)).norm(), 0.5);
