@@ -7,14 +7,13 @@
 
 #include "cli/table.hpp"
 #include "client/choices.hpp"
+#include "client/pose_values.hpp"
 
 namespace landmarkdb::client {
 namespace {
 
 using cli::Align;
 using Json = nlohmann::ordered_json;
-
-Json vector_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
 Json landmark_json(const Landmark& landmark) {
   return {{"name", landmark.name},

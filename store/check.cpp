@@ -95,8 +95,10 @@ void check_version(const Database& database,
                    const RunContext& context,
                    CheckReport& report) {
   const Transaction snapshot(database, Transaction::Kind::kRead);
+  const std::uint64_t before = report.bytes;
   const std::optional<std::string> damage = version_damage(database, row, report.bytes);
   if (damage) {
+    report.bytes = before;  // arrays are read again, one by one
     note_damage(database, row, *damage, context, report);
     return;
   }

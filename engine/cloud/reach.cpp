@@ -44,11 +44,8 @@ Bulk measure_bulk(std::span<const Eigen::Vector3f> points) {
   return bulk;
 }
 
-// Not of what is not finite: no comparison with NaN is true.
-bool is_within(const Eigen::Vector3f& p, const Eigen::Vector3d& centre, double most_m) {
-  const Eigen::Array3d apart = (p.cast<double>() - centre).array().abs();
-  return apart.x() <= most_m && apart.y() <= most_m && apart.z() <= most_m;
-}
+constexpr double kShell = 2.0;   // how much further out each shell begins
+constexpr double kBeside = 1.2;  // beyond a shell's ends, for company
 
 // Points in the cell and the 26 around it.
 std::size_t points_around(const VoxelCells& cells, const VoxelCell& own) {
@@ -67,8 +64,8 @@ double distance_to(const Eigen::Vector3f& p, const Eigen::Vector3d& centre) {
   return (p.cast<double>() - centre).norm();
 }
 
-// Adds to `alone` what of the points kept[far[..]] up to twice as far out as `from_m` has hardly
-// another around; those a little further out count as company.
+// Adds to `alone` what of the points kept[far[..]] lies from `from_m` to twice as far out and has
+// hardly another around; those a little nearer or further count as company.
 void find_alone(std::span<const Eigen::Vector3f> points,
                 const Eigen::Vector3d& centre,
                 double from_m,
@@ -76,14 +73,14 @@ void find_alone(std::span<const Eigen::Vector3f> points,
                 const std::vector<std::uint32_t>& far,
                 std::vector<std::uint32_t>& alone,
                 const RunContext& context) {
-  constexpr double kAround = 0.05;  // of the way: what a 16-line laser sees there is denser
-  constexpr double kShell = 2.0, kCompany = 1.2;
+  constexpr double kAround = 0.05;  // of the way
   constexpr std::size_t kFewest = 4;
   std::vector<Eigen::Vector3f> shell;
   std::vector<std::uint32_t> place;  // in `kept`
   for (const std::uint32_t k : far) {
     const Eigen::Vector3f& p = points[kept[k]];
-    if (distance_to(p, centre) >= kCompany * kShell * from_m) continue;
+    const double away = distance_to(p, centre);
+    if (away < from_m / kBeside || away >= kBeside * kShell * from_m) continue;
     shell.push_back(p);
     place.push_back(k);
   }
@@ -92,16 +89,18 @@ void find_alone(std::span<const Eigen::Vector3f> points,
     if (cell.end - cell.begin >= kFewest || points_around(cells, cell) >= kFewest) continue;
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
       const std::uint32_t at = cells.order[i];
-      if (distance_to(shell[at], centre) < kShell * from_m) alone.push_back(place[at]);
+      const double away = distance_to(shell[at], centre);
+      if (away >= from_m && away < kShell * from_m) alone.push_back(place[at]);
     }
   }
 }
 
 }  // namespace
 
-bool Reach::holds(const Eigen::Vector3f& p) const { return is_within(p, centre, far_m); }
-
-bool Reach::holds_at_hand(const Eigen::Vector3f& p) const { return is_within(p, centre, near_m); }
+bool Reach::holds(const Eigen::Vector3f& p) const {
+  const Eigen::Array3d apart = (p.cast<double>() - centre).array().abs();
+  return apart.x() <= far_m && apart.y() <= far_m && apart.z() <= far_m;  // no comparison with NaN
+}
 
 Reach measure_reach(std::span<const Eigen::Vector3f> points) {
   // Of a room 30 km: a scan reaches less far, and the grids of voxels a little further.
@@ -119,20 +118,24 @@ std::size_t drop_far_alone(std::span<const Eigen::Vector3f> points,
                            std::vector<std::uint32_t>& kept,
                            const RunContext& context) {
   constexpr std::size_t kFewestOfBulk = 100;  // in fewer points none is a bulk
-  if (!(reach.near_m > 0.0) || kept.size() < kFewestOfBulk) return 0;
+  constexpr double kMostAlone = 0.005;
+  constexpr double kLeastOfAll = 1e-6;  // of how far out the bulk lies: a spot has no extent
+  const double all_m = std::max(1.0, reach.centre.cwiseAbs().maxCoeff());
+  if (kept.size() < kFewestOfBulk || !(reach.near_m > kLeastOfAll * all_m)) return 0;
   std::vector<std::uint32_t> far;  // places in `kept`
   for (std::uint32_t k = 0; k < kept.size(); ++k) {
-    if (!reach.holds_at_hand(points[kept[k]])) far.push_back(k);
+    if (distance_to(points[kept[k]], reach.centre) >= reach.near_m / kBeside) far.push_back(k);
   }
   // Shell by shell, each twice as far as the last, as surface is seen the more thinly the farther
   // it is.
   std::vector<std::uint32_t> alone;
-  for (double from_m = reach.near_m; !far.empty(); from_m *= 2.0) {
+  for (double from_m = reach.near_m; !far.empty(); from_m *= kShell) {
     find_alone(points, reach.centre, from_m, kept, far, alone, context);
     std::erase_if(far, [&](std::uint32_t k) {
-      return distance_to(points[kept[k]], reach.centre) < 2.0 * from_m;
+      return distance_to(points[kept[k]], reach.centre) < kShell * from_m / kBeside;
     });
   }
+  if (static_cast<double>(alone.size()) > kMostAlone * static_cast<double>(kept.size())) return 0;
   constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
   for (const std::uint32_t k : alone) kept[k] = kDropped;
   return alone.empty() ? 0 : std::erase(kept, kDropped);

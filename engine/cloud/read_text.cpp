@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/cloud/byte_window.hpp"
@@ -35,13 +36,13 @@ class TextCloudReader {
     while (lines_.next(line)) {
       input_.tick(lines_.number(), lines_.at());
       if (is_comment(line)) continue;
+      if (!std::exchange(started_, true)) {
+        names_ = names_in(line);  // or a title
+        if (!names_.empty()) continue;
+      }
       splitter.split(line, words);
       if (words.size() == 1 && start_block(words[0])) continue;
-      if (builder_.size() == 0 && !started_) {
-        started_ = true;
-        if (take_names(words)) continue;
-      }
-      if (layout_.columns == 0) layout_ = layout_without_names(words);
+      if (layout_.columns == 0) layout_ = layout_for(words);
       add(words, line);
     }
     if (promised_ && builder_.size() < due_) {
@@ -69,21 +70,13 @@ class TextCloudReader {
     return true;
   }
 
-  // The first line: names of columns, or a title. True when it was one.
-  bool take_names(const std::vector<std::string_view>& words) {
-    const bool has_number = std::any_of(words.begin(), words.end(), [](std::string_view word) {
-      return parse_number(word).has_value();
-    });
-    if (has_number) return false;
-    layout_ = layout_by_names(words).value_or(TextLayout{});
-    for (const std::string_view word : words) names_.emplace_back(word);
-    return true;
-  }
-
-  // A line with a name for each column that does not say which are x, y and z is no title: taking
-  // the first three would put an identifier for x.
-  TextLayout layout_without_names(const std::vector<std::string_view>& words) const {
-    if (names_.size() >= 3 && names_.size() == words.size()) {
+  // By the names, where there is one for each column of the first row at the most. A name for each
+  // that does not say which are x, y and z is no title: taking the first three would put an
+  // identifier for x.
+  TextLayout layout_for(const std::vector<std::string_view>& row) const {
+    const std::optional<TextLayout> named = layout_by_names(names_);
+    if (named && names_.size() <= row.size()) return without_odd_colours(*named, row);
+    if (names_.size() >= 3 && names_.size() == row.size()) {
       std::string listed;
       for (const std::string& name : names_) listed += (listed.empty() ? "" : ", ") + name;
       refuse(input_,
@@ -91,6 +84,18 @@ class TextCloudReader {
                  ", want x, y and z among them (or no names, and these three first)");
     }
     return layout_by_numbers(input_);
+  }
+
+  // Colours count to 255; shares of one would all be black.
+  static TextLayout without_odd_colours(TextLayout layout,
+                                        const std::vector<std::string_view>& row) {
+    if (!layout.colour) return layout;
+    for (const std::size_t column : *layout.colour) {
+      const std::optional<std::uint64_t> value = parse_count(row[column]);
+      if (!value || *value > 255) layout.colour.reset();
+      if (!layout.colour) break;
+    }
+    return layout;
   }
 
   Eigen::Vector3d numbers(const std::vector<std::string_view>& words,

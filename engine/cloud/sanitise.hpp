@@ -22,8 +22,9 @@ CloudCounts sanitise(PointCloud& cloud, const RunContext& context = {});
 
 // The same for the blocks of one scan, in their order, of which no two need be in memory together:
 // repeats are those within a block; what is too far away is judged by this block and those before,
-// each position once; normals that are not of unit length become zero, for repair_normals to mend
-// when all blocks are in one cloud. The blocks have one origin. Not thread-safe.
+// each position once, and what is far off and alone stays; normals that are not of unit length
+// become zero, for repair_normals to mend when all blocks are in one cloud. The blocks have one
+// origin. Not thread-safe.
 class BlockSanitiser {
  public:
   CloudCounts sanitise(PointCloud& block, const RunContext& context = {});

@@ -44,12 +44,12 @@ void weigh(const std::vector<std::string_view>& words, std::size_t first, Eviden
   if (!(std::abs(std::sqrt(squared) - 1.0) <= kTolerance)) evidence.could_be_normal = false;
 }
 
-// The name without quotes, in small letters, up to a bracket with its unit.
+// The name without quotes and blanks, in small letters, up to a bracket with its unit.
 std::string plain_name(std::string_view name) {
   std::string plain;
   for (const char c : name) {
     if (c == '[' || c == '(') break;
-    if (c == '"' || c == '\'') continue;
+    if (c == '"' || c == '\'' || is_blank(c)) continue;
     plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   }
   return plain;
@@ -58,11 +58,11 @@ std::string plain_name(std::string_view name) {
 using Names = std::initializer_list<std::string_view>;
 
 // The columns of three names, each of which may be one of several.
-std::optional<TextLayout::Three> find_three(std::span<const std::string_view> names,
+std::optional<TextLayout::Three> find_three(std::span<const std::string> names,
                                             const std::array<Names, 3>& wanted) {
   TextLayout::Three three{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto found = std::find_if(names.begin(), names.end(), [&](std::string_view name) {
+    const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
       return std::find(wanted[k].begin(), wanted[k].end(), plain_name(name)) != wanted[k].end();
     });
     if (found == names.end()) return std::nullopt;
@@ -105,7 +105,30 @@ void Splitter::split(std::string_view line, std::vector<std::string_view>& words
   }
 }
 
-std::optional<TextLayout> layout_by_names(std::span<const std::string_view> names) {
+std::vector<std::string> names_in(std::string_view line) {
+  const char separator = line.find(',') != std::string_view::npos   ? ','
+                         : line.find(';') != std::string_view::npos ? ';'
+                                                                    : ' ';
+  std::vector<std::string> names;
+  while (!line.empty() && names.size() < kMostColumns) {
+    std::string_view name;
+    if (separator == ' ') {
+      name = take_word(line);
+      if (name.empty()) break;
+    } else {
+      const std::size_t end = std::min(line.find(separator), line.size());
+      name = line.substr(0, end);
+      line.remove_prefix(std::min(end + 1, line.size()));
+      std::string_view rest = name;
+      name = take_word(rest);  // "x [m]": the first word names it
+    }
+    if (parse_number(name)) return {};
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+std::optional<TextLayout> layout_by_names(std::span<const std::string> names) {
   TextLayout layout;
   layout.columns = names.size();
   const auto position = find_three(names, {Names{"x"}, Names{"y"}, Names{"z"}});
@@ -126,7 +149,7 @@ TextLayout layout_by_numbers(const Input& input) {
   std::vector<std::string_view> words;
   std::string_view line;
   for (std::size_t seen = 0; seen < kLooked && lines.next(line);) {
-    if (is_comment(line)) continue;
+    if (is_comment(line) || !names_in(line).empty()) continue;
     Splitter(input, lines).split(line, words);
     // A count or column names; or an error, which the reading itself will name.
     if (words.size() < 3 || !parse_number(words[0])) continue;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -39,9 +40,13 @@ struct TextLayout {
   std::optional<Three> normal, colour;
 };
 
+// The names in a line of them, without what parts them (commas or semicolons, or else blanks);
+// nothing where a number is among them.
+std::vector<std::string> names_in(std::string_view line);
+
 // By the names of the columns, in any order and case: x y z; nx ny nz or normal_x ..; r g b or
 // red ..; a unit may follow in brackets. Nothing where x, y and z are not among them.
-std::optional<TextLayout> layout_by_names(std::span<const std::string_view> names);
+std::optional<TextLayout> layout_by_names(std::span<const std::string> names);
 
 // By the first lines of numbers: x y z [intensity] [three] [three], where three numbers are a
 // colour or a normal if all that are looked at could be.

@@ -6,8 +6,8 @@
 #include <Eigen/Eigenvalues>
 
 #include "engine/geometry/pose.hpp"
+#include "engine/registration/gyration.hpp"
 #include "engine/registration/plane_pairs.hpp"
-#include "engine/registration/spread.hpp"
 
 namespace landmarkdb {
 
@@ -58,9 +58,9 @@ IcpResult refine_icp(const SurfaceGrid& target,
                      std::span<const Eigen::Vector3f> source_normals,
                      const Eigen::Isometry3d& T_target_source,
                      const IcpOptions& options) {
-  const Spread spread = measure_spread(source);
-  const Eigen::Vector3d centre_source = spread.centre;
-  const double length = std::max(spread.radius_m, 1e-9);
+  const Gyration gyration = measure_gyration(source);
+  const Eigen::Vector3d centre_source = gyration.centre;
+  const double length = std::max(gyration.radius_m, 1e-9);
   const double cell = target.cell_m();
   IcpResult result;
   result.T_target_source = T_target_source;

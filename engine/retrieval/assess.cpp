@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/registration/spread.hpp"
+#include "engine/registration/gyration.hpp"
 #include "engine/retrieval/object_evidence.hpp"
 #include "engine/retrieval/rank_poses.hpp"
 
@@ -190,8 +190,8 @@ void assess_fine(const Meeting& meeting,
   evidence = {};
   if (meeting.entry_is_source) {
     refine_seen(meeting, query, assessed);
-    evidence.observability =
-        observability(assessed.icp, measure_spread(meeting.source).radius_m, meeting.source.size());
+    evidence.observability = observability(
+        assessed.icp, measure_gyration(meeting.source).radius_m, meeting.source.size());
     look_at_object(meeting, entry, query, meeting.source.size(), assessed);
     evidence.outgrown = outgrown_share(meeting, entry, assessed.T_entry_sensor);
     evidence.continued = continued_share(meeting, entry, assessed.T_entry_sensor);
@@ -199,7 +199,7 @@ void assess_fine(const Meeting& meeting,
   }
   if (!meeting.precise.empty()) refine_precisely(meeting, assessed);
   evidence.observability = observability(paired_at(meeting, assessed.T_entry_sensor),
-                                         measure_spread(meeting.source).radius_m,
+                                         measure_gyration(meeting.source).radius_m,
                                          meeting.source.size());
   judge_by_wide_surface(meeting, entry, query, some_judges(meeting, kFinePoints), assessed);
 }

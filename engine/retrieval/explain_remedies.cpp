@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <utility>
 
+#include "engine/base/print.hpp"
 #include "engine/retrieval/expected.hpp"
 #include "engine/retrieval/explain.hpp"
 
@@ -13,12 +13,6 @@ namespace landmarkdb {
 namespace {
 
 constexpr std::uint32_t kFewestPairs = 4;  // pairs a similarity is estimated from
-
-std::string decimals(double value, int digits) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
 
 std::string effect_name(QueryStatus status) {
   return status == QueryStatus::kLocalized ? "localized" : "ambiguous";
@@ -57,7 +51,7 @@ void try_min_confidence(const Decision& decision, std::vector<Remedy>& remedies)
     const QueryStatus status = decide(decision, decision.search.poses, options);
     if (status == QueryStatus::kNotFound) continue;
     remedies.push_back(
-        {"--min-confidence", decimals(options.min_confidence, 2), effect_name(status)});
+        {"--min-confidence", print("%.2f", options.min_confidence), effect_name(status)});
     return;
   }
 }
@@ -114,7 +108,8 @@ void try_prior(const Decision& decision, std::vector<Remedy>& remedies) {
     return agrees_with_prior(pose, record_of(decision, pose), query, options);
   });
   if (status != QueryStatus::kLocalized) return;
-  remedies.push_back({"--prior-radius", decimals(options.prior_radius_m, 1), effect_name(status)});
+  remedies.push_back(
+      {"--prior-radius", print("%.1f", options.prior_radius_m), effect_name(status)});
 }
 
 // What the asker said and every good pose contradicts.
@@ -155,7 +150,7 @@ void try_filters(const Decision& decision, std::vector<Remedy>& remedies) {
   if (counts.after_ratio < kFewestPairs) {
     if (most->ratio_for_four > decision.input.options.ratio) {
       remedies.push_back(
-          {"--ratio", decimals(most->ratio_for_four, 2), "four pairs past the ratio filter"});
+          {"--ratio", print("%.2f", most->ratio_for_four), "four pairs past the ratio filter"});
     }
   } else if (counts.after_consistency < kFewestPairs) {
     remedies.push_back({"--filters", "ratio", std::to_string(counts.after_ratio) + " pairs left"});
@@ -167,7 +162,7 @@ void try_voxel(const Decision& decision, std::vector<Remedy>& remedies) {
   const double voxel_m = decision.search.needs_voxel_m;
   constexpr double kMillimetre = 1e-3;
   remedies.push_back({"landmarkdb-indexer add --voxel",
-                      decimals(std::ceil(voxel_m / kMillimetre) * kMillimetre, 3),
+                      print("%.3f", std::ceil(voxel_m / kMillimetre) * kMillimetre),
                       "the cloud is dense enough for the scene"});
 }
 

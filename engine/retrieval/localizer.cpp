@@ -301,8 +301,7 @@ QueryResult Localizer::query(std::vector<QueryCloud> clouds,
       answer.reason = "verify: all " + std::to_string(dropped.size()) +
                       " poses contradict the up direction or the prior";
     } else if (all_are_damaged(entries, wanted)) {
-      answer.reason =
-          "match: all scenes of the database are damaged and not served; `health` says how";
+      answer.reason = "match: every scene asked is damaged and not served; `health` says how";
     } else {
       answer.reason = nothing_left(search, query, views);
     }

@@ -71,18 +71,21 @@ double best_rival(std::size_t i, std::span<const Assessed> poses, const Entries&
   return best;
 }
 
-// The least contrast to any rival. Where the two were not compared point by point, the scores say
-// it: a lead of kFullLead is full contrast.
-double least_contrast(std::size_t i, std::span<const Assessed> poses, const Entries& entries) {
+// Where two poses were not compared point by point, the scores say it: a lead of kFullLead is full
+// contrast.
+double contrast_to(const Assessed& pose, const Assessed& other) {
   constexpr double kFullLead = 0.4;
+  if (other.id < pose.contrast.size()) return static_cast<double>(pose.contrast[other.id]);
+  const double lead = pose.score > 0.0 ? 1.0 - other.score / pose.score : 0.0;
+  return std::clamp(lead / kFullLead, -1.0, 1.0);
+}
+
+// The least contrast to any rival.
+double least_contrast(std::size_t i, std::span<const Assessed> poses, const Entries& entries) {
   double least = 1.0;
   for (std::size_t j = 0; j < poses.size(); ++j) {
     if (j == i || !rivals(poses[i], poses[j], entries)) continue;
-    const bool compared = poses[j].id < poses[i].contrast.size();
-    const double lead = poses[i].score > 0.0 ? 1.0 - poses[j].score / poses[i].score : 0.0;
-    least = std::min(least,
-                     compared ? static_cast<double>(poses[i].contrast[poses[j].id])
-                              : std::clamp(lead / kFullLead, -1.0, 1.0));
+    least = std::min(least, contrast_to(poses[i], poses[j]));
   }
   return least;
 }
@@ -109,6 +112,15 @@ bool is_sure(const Standing& best, const VerdictOptions& options) {
   return best.judged.confidence >= options.sure_confidence;
 }
 
+// To two digits, or as many as tell it from what is wanted.
+std::string told_from(double value, double wanted) {
+  std::string text = print("%.2f", value);
+  for (int digits = 3; digits < 7 && text == print("%.*f", digits - 1, wanted); ++digits) {
+    text = print("%.*f", digits, value);
+  }
+  return text;
+}
+
 // What of the following is asked of a pose and not reached; empty where all of it is.
 using Lack = std::string;
 
@@ -121,20 +133,28 @@ Lack open_freedom(const Evidence& evidence, const VerdictOptions& options) {
       "leaves a freedom open: observability %.4f, wanted %g", evidence.observability, least);
 }
 
-// The pose cannot be told from another.
-Lack close_rival(const Standing& best, const VerdictOptions& options) {
-  const Evidence& evidence = best.judged.pose.evidence;
-  const double share = best.rival_score / best.judged.pose.score;
+// The pose cannot be told from another that reaches this share of its score, with this contrast
+// between the two.
+Lack close_rival(const Standing& best,
+                 double share,
+                 double contrast,
+                 const VerdictOptions& options) {
   if (share >= options.rival_share) {
-    return print("has a rival of %.0f %% of its quality, wanted less than %.0f %%",
+    return print("has a rival of %.1f %% of its quality, wanted less than %.0f %%",
                  100.0 * share,
                  100.0 * options.rival_share);
   }
-  if (!evidence.of_object || is_sure(best, options)) return {};
+  if (!best.judged.pose.evidence.of_object || is_sure(best, options)) return {};
   const double least =
       share >= options.reach_share ? options.least_contrast_in_reach : options.least_contrast;
-  if (evidence.contrast >= least) return {};
-  return print("has a contrast of %.2f to its rival, wanted %.2f", evidence.contrast, least);
+  if (contrast >= least) return {};
+  return print(
+      "has a contrast of %s to its rival, wanted %.2f", told_from(contrast, least).c_str(), least);
+}
+
+Lack close_rival(const Standing& best, const VerdictOptions& options) {
+  const Assessed& pose = best.judged.pose;
+  return close_rival(best, best.rival_score / pose.score, pose.evidence.contrast, options);
 }
 
 bool is_rivalled(const Standing& best, const VerdictOptions& options) {
@@ -144,7 +164,7 @@ bool is_rivalled(const Standing& best, const VerdictOptions& options) {
 
 Lack confidence_lack(double confidence, double least, const char* of) {
   if (confidence >= least) return {};
-  return print("has confidence %.2f, wanted %.2f%s", confidence, least, of);
+  return print("has confidence %s, wanted %.2f%s", told_from(confidence, least).c_str(), least, of);
 }
 
 // Of an object's pose.
@@ -155,8 +175,9 @@ Lack object_lack(const Standing& best, const VerdictOptions& options) {
       confidence_lack(best.judged.confidence, options.least_confidence_of_object, " of an object");
   if (!unsure.empty()) return unsure;
   if (!(pose.score >= options.least_score_of_object)) {
-    return print(
-        "has quality %.2f, wanted %.2f of an object", pose.score, options.least_score_of_object);
+    return print("has quality %s, wanted %.2f of an object",
+                 told_from(pose.score, options.least_score_of_object).c_str(),
+                 options.least_score_of_object);
   }
   if (!(evidence.continued <= options.most_continued)) {
     return print(
@@ -195,14 +216,14 @@ bool is_taken(const Standing& best, const VerdictOptions& options) {
   return lack_of(best, options).empty();
 }
 
-// Whether the two alone could not be told apart.
-bool is_rival(const Assessed& best,
+// Whether the best pose cannot be told from this one.
+bool is_rival(const Standing& best,
               const Assessed& other,
               const Entries& entries,
               const VerdictOptions& options) {
-  const std::vector<Assessed> both{best, other};
-  return rivals(best, other, entries) &&
-         !close_rival(judge_among(0, both, entries), options).empty();
+  const Assessed& pose = best.judged.pose;
+  return rivals(pose, other, entries) &&
+         !close_rival(best, other.score / pose.score, contrast_to(pose, other), options).empty();
 }
 
 // Whether the pose's own evidence would do, were there no rivals.
@@ -275,8 +296,12 @@ Verdict judge(std::vector<Assessed> assessed,
   verdict.judged.push_back(best.judged);
   for (std::size_t i = 1; i < poses.size(); ++i) {
     verdict.judged.push_back(judge_among(i, poses, entries).judged);
-    verdict.judged.back().rival = is_rival(poses[0], poses[i], entries, options);
+    verdict.judged.back().rival = is_rival(best, poses[i], entries, options);
   }
+  // All that explain the query about equally well come first.
+  std::stable_partition(verdict.judged.begin() + 1, verdict.judged.end(), [](const Judged& judged) {
+    return judged.rival;
+  });
   verdict.lacks = lack_of(best, options);
   if (verdict.lacks.empty()) {
     verdict.status = QueryStatus::kLocalized;

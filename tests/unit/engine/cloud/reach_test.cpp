@@ -45,9 +45,9 @@ TEST(DropFarAlone, KeepsWhatIsAtHandHoweverThin) {
 
 TEST(DropFarAlone, AsksForCompanyByTheWayThere) {
   std::vector<Eigen::Vector3f> points;
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < 4000; ++i) {
     points.emplace_back(
-        static_cast<float>(i % 10), static_cast<float>(i / 10 % 10), static_cast<float>(i / 100));
+        static_cast<float>(i % 20), static_cast<float>(i / 20 % 20), static_cast<float>(i / 400));
   }
   const auto with_row = [&](float away, float apart) {
     std::vector<Eigen::Vector3f> more = points;
@@ -62,6 +62,40 @@ TEST(DropFarAlone, AsksForCompanyByTheWayThere) {
   EXPECT_EQ(with_row(100.0F, 30.0F), 8U);
   EXPECT_EQ(with_row(1000.0F, 10.0F), 0U);
   EXPECT_EQ(with_row(1000.0F, 300.0F), 8U);
+}
+
+TEST(DropFarAlone, KeepsASurfaceAcrossTheEndsOfItsShells) {
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 4000; ++i) {
+    points.emplace_back(
+        static_cast<float>(i % 20), static_cast<float>(i / 20 % 20), static_cast<float>(i / 400));
+  }
+  const Reach reach = measure_reach(points);
+  for (const double shells : {1.0, 2.0, 4.0}) {
+    std::vector<Eigen::Vector3f> more = points;
+    const double end_m = shells * reach.near_m;
+    for (int i = -50; i < 3; ++i) {  // three just beyond
+      more.push_back((reach.centre + Eigen::Vector3d(0, end_m + 0.02 * i + 0.01, 0)).cast<float>());
+    }
+    std::vector<std::uint32_t> kept = all_of(more);
+    EXPECT_EQ(drop_far_alone(more, reach, kept, {}), 0U) << shells;
+  }
+}
+
+TEST(DropFarAlone, KeepsASparseCloudWholeAndOneNextToNothing) {
+  std::vector<Eigen::Vector3f> sparse;
+  for (int i = 0; i < 1000; ++i) {
+    sparse.emplace_back(static_cast<float>(i % 10), static_cast<float>(i / 10 % 10), 0.0F);
+  }
+  for (int i = 0; i < 20; ++i)
+    sparse.emplace_back(100.0F + 30.0F * static_cast<float>(i), 0.0F, 0.0F);
+  std::vector<std::uint32_t> kept = all_of(sparse);
+  EXPECT_EQ(drop_far_alone(sparse, measure_reach(sparse), kept, {}), 0U);
+  std::vector<Eigen::Vector3f> spot;
+  for (int i = 0; i < 900; ++i) spot.emplace_back(1e-20F * static_cast<float>(i), 1.0F, 2.0F);
+  spot.emplace_back(50.0F, 1.0F, 2.0F);
+  kept = all_of(spot);
+  EXPECT_EQ(drop_far_alone(spot, measure_reach(spot), kept, {}), 0U);
 }
 
 TEST(DropFarAlone, NothingIsFarFromASpotOrAHandful) {

@@ -43,6 +43,8 @@ TEST(ReadText, AcceptsCommasTabsSemicolonsAndColumnNames) {
 TEST(ReadText, GoesByTheNamesOfColumns) {
   for (const char* file : {"id,x,y,z\n900001,1,2,3\n900002,4,5,6\n",
                            "y x z\n2 1 3\n5 4 6\n",
+                           "y x z\n2 1 3 0.5\n5 4 6 0.5\n",
+                           "id,x [m],y [m],z [m]\n900001,1,2,3\n900002,4,5,6\n",
                            "\xef\xbb\xbf\"Z[m]\";\"Y[m]\";\"X[m]\"\r\n3;2;1\r\n6;5;4\r\n"}) {
     const PointCloud cloud = parse(file, "a.csv");
     ASSERT_EQ(cloud.size(), 2U) << file;
@@ -55,13 +57,19 @@ TEST(ReadText, GoesByTheNamesOfColumns) {
   EXPECT_EQ(all.colours.at(0), (std::array<std::uint8_t, 3>{1, 2, 3}));
   EXPECT_TRUE(parse("x y z a b c\n1 2 3 255 0 0\n", "a.csv").colours.empty())
       << "what has another name is no colour";
+  EXPECT_TRUE(parse("x y z r g b\n1 2 3 0.25 0.5 1\n", "a.csv").colours.empty()) << "shares";
 }
 
 TEST(ReadText, RefusesNamesThatDoNotSayWhatIsX) {
   EXPECT_THAT(
       [&] { parse("id,range,angle\n1,2,3\n", "a.csv"); },
       ThrowsMessage<Error>(AllOf(HasSubstr("id, range, angle"), HasSubstr("want x, y and z"))));
-  EXPECT_EQ(parse("Scan of the lobby\n1 2 3\n", "a.xyz").size(), 1U) << "a title";
+  for (const char* title : {"Scan of the lobby, second floor",
+                            "Points x y z of the lobby",
+                            "X (m) Y (m) Z (m)",
+                            "X Y Z Intensity"}) {
+    EXPECT_EQ(parse(std::string(title) + "\n1 2 3\n", "a.xyz").size(), 1U) << title;
+  }
 }
 
 TEST(ReadText, SkipsAByteOrderMark) {

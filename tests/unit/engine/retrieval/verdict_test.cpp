@@ -113,7 +113,7 @@ TEST(Judge, SaysWhatTheBestPoseLacks) {
   EXPECT_EQ(lacks({sure}), "");
   EXPECT_THAT(lacks({poor(0, kZero, 0.2)}), HasSubstr("has confidence 0.42, wanted 0.50"));
   EXPECT_THAT(lacks(compared(sure, good(0, {5, 0, 0}, 0.76), 0.9F)),
-              HasSubstr("rival of 95 % of its quality, wanted less than 93 %"));
+              HasSubstr("rival of 95.0 % of its quality, wanted less than 93 %"));
   sure.evidence.observability = 0.004;
   EXPECT_THAT(lacks({sure}), HasSubstr("observability 0.0040, wanted 0.006"));
 }
