@@ -171,7 +171,7 @@ Lack confidence_lack(double confidence, double least, const char* of) {
 Lack object_lack(const Standing& best, const VerdictOptions& options) {
   const Assessed& pose = best.judged.pose;
   const Evidence& evidence = pose.evidence;
-  const Lack unsure =
+  Lack unsure =
       confidence_lack(best.judged.confidence, options.least_confidence_of_object, " of an object");
   if (!unsure.empty()) return unsure;
   if (!(pose.score >= options.least_score_of_object)) {
@@ -257,6 +257,7 @@ void put_surest_object_first(std::vector<Assessed>& poses, const Entries& entrie
   }
   std::sort(order.begin(), order.end());
   std::vector<Assessed> sorted;
+  sorted.reserve(order.size());
   for (const auto& [confidence, i] : order) sorted.push_back(std::move(poses[i]));
   poses = std::move(sorted);
 }
