@@ -81,8 +81,9 @@ void note_damage(const Database& database,
                  CheckReport& report) {
   std::vector<std::string> faults;
   try {
-    faults = array_faults(database, row.segment_id, row.what(), context, report.bytes);
-    report.arrays += read_manifest(database, row.segment_id, row.what()).arrays.size();
+    const Manifest manifest = read_manifest(database, row.segment_id, row.what());
+    faults = array_faults(database, row.segment_id, manifest, row.what(), context, report.bytes);
+    report.arrays += manifest.arrays.size();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kDataLoss && error.code() != ErrorCode::kUnimplemented) throw;
   }

@@ -182,10 +182,10 @@ Segment read_segment(const Database& database,
 
 std::vector<std::string> array_faults(const Database& database,
                                       std::int64_t segment_id,
+                                      const Manifest& manifest,
                                       const std::string& what,
                                       const RunContext& context,
                                       std::uint64_t& bytes) {
-  const Manifest manifest = read_manifest(database, segment_id, what);
   std::vector<std::string> faults;
   for (std::size_t i = 0; i < manifest.arrays.size(); ++i) {
     const ArrayInfo& info = manifest.arrays[i];

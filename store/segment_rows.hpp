@@ -28,10 +28,11 @@ Segment read_segment(const sqlite::Database& database,
                      const RunContext& context,
                      SceneParts parts = SceneParts::kWhole);
 
-// What is wrong with each array of a segment, where the manifest can be read at all, in its order.
-// `bytes` grows by what was read whole. Throws what read_manifest and `context.check` do.
+// What is wrong with each array of a segment of this manifest, in its order. `bytes` grows by what
+// was read whole. Throws what `context.check` does.
 std::vector<std::string> array_faults(const sqlite::Database& database,
                                       std::int64_t segment_id,
+                                      const Manifest& manifest,
                                       const std::string& what,
                                       const RunContext& context,
                                       std::uint64_t& bytes);

@@ -47,17 +47,13 @@ Bulk measure_bulk(std::span<const Eigen::Vector3f> points) {
 constexpr double kShell = 2.0;   // how much further out each shell begins
 constexpr double kBeside = 1.2;  // beyond a shell's ends, for company
 
-// Points in the cell and the 26 around it.
-std::size_t points_around(const VoxelCells& cells, const VoxelCell& own) {
+// Whether the cell and the 26 around it hold so many points.
+bool holds_around(const VoxelCells& cells, const VoxelCell& own, std::size_t points) {
   std::size_t count = 0;
-  for (int row = 0; row < 9; ++row) {
-    const std::int64_t y = own.y + row % 3 - 1;
-    const std::int64_t z = own.z + row / 3 - 1;
-    for (const VoxelCell& cell : find_row(cells, own.x - 1, own.x + 1, y, z)) {
-      count += cell.end - cell.begin;
-    }
-  }
-  return count;
+  return any_around(cells, own, [&](const VoxelCell& cell) {
+    count += cell.end - cell.begin;
+    return count >= points;
+  });
 }
 
 double distance_to(const Eigen::Vector3f& p, const Eigen::Vector3d& centre) {
@@ -86,7 +82,7 @@ void find_alone(std::span<const Eigen::Vector3f> points,
   }
   const VoxelCells cells = group_by_voxel(shell, kAround * from_m, context);
   for (const VoxelCell& cell : cells.cells) {
-    if (cell.end - cell.begin >= kFewest || points_around(cells, cell) >= kFewest) continue;
+    if (cell.end - cell.begin >= kFewest || holds_around(cells, cell, kFewest)) continue;
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
       const std::uint32_t at = cells.order[i];
       const double away = distance_to(shell[at], centre);

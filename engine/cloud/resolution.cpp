@@ -106,14 +106,11 @@ float kth_around(const PointCloud& cloud,
   };
   add(own);
   const float reach = kth();
-  for (int row = 0; row < 9; ++row) {
-    const std::int64_t y = own.y + row % 3 - 1;
-    const std::int64_t z = own.z + row / 3 - 1;
-    for (const VoxelCell& cell : find_row(grid, own.x - 1, own.x + 1, y, z)) {
-      if (cell.begin == own.begin) continue;
-      if (squared_distance_to(cell, cell_m, points[i]) <= reach) add(cell);
-    }
-  }
+  any_around(grid, own, [&](const VoxelCell& cell) {
+    const bool is_own = cell.begin == own.begin;
+    if (!is_own && squared_distance_to(cell, cell_m, points[i]) <= reach) add(cell);
+    return false;
+  });
   return kth();
 }
 

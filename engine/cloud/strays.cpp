@@ -24,15 +24,7 @@ bool has_company(const std::vector<Eigen::Vector3f>& points,
     }
     return false;
   };
-  if (near_in(own)) return true;
-  for (int row = 0; row < 9; ++row) {
-    const std::int64_t y = own.y + row % 3 - 1;
-    const std::int64_t z = own.z + row / 3 - 1;
-    for (const VoxelCell& cell : find_row(cells, own.x - 1, own.x + 1, y, z)) {
-      if (near_in(cell)) return true;
-    }
-  }
-  return false;
+  return near_in(own) || any_around(cells, own, near_in);
 }
 
 }  // namespace

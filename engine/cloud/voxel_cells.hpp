@@ -54,4 +54,18 @@ std::span<const VoxelCell> find_row(const VoxelCells& cells,
                                     std::int64_t y,
                                     std::int64_t z);
 
+// Calls `visit` with the cell and those of the 26 around it that are not empty, by ascending
+// (z, y, x), until one call returns true; whether one did.
+template <typename Visit>
+bool any_around(const VoxelCells& cells, const VoxelCell& cell, const Visit& visit) {
+  for (int row = 0; row < 9; ++row) {
+    const std::int64_t y = cell.y + row % 3 - 1;
+    const std::int64_t z = cell.z + row / 3 - 1;
+    for (const VoxelCell& one : find_row(cells, cell.x - 1, cell.x + 1, y, z)) {
+      if (visit(one)) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace landmarkdb

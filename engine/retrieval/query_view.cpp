@@ -133,14 +133,11 @@ CleanQuery dense_part(const CleanQuery& query, double spacing_m, const RunContex
   std::vector<char> keep(query.cloud.size(), 0);
   const auto mark = [&](const VoxelCell& cell) {
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) keep[cells.order[i]] = 1;
+    return false;  // and the next one
   };
   for (const VoxelCell& cell : cells.cells) {
     if (cell.end - cell.begin < kFewest) continue;
-    for (int k = 0; k < 9; ++k) {
-      const std::int64_t y = cell.y + k % 3 - 1;
-      const std::int64_t z = cell.z + k / 3 - 1;
-      for (const VoxelCell& beside : find_row(cells, cell.x - 1, cell.x + 1, y, z)) mark(beside);
-    }
+    any_around(cells, cell, mark);
   }
   CleanQuery dense;
   const PointCloud& whole = query.cloud;

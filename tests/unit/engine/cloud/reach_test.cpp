@@ -35,6 +35,16 @@ std::vector<std::uint32_t> all_of(const std::vector<Eigen::Vector3f>& points) {
   return all;
 }
 
+// 20 x 20 x 10 m, a point a metre.
+std::vector<Eigen::Vector3f> bulk() {
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 4000; ++i) {
+    points.emplace_back(
+        static_cast<float>(i % 20), static_cast<float>(i / 20 % 20), static_cast<float>(i / 400));
+  }
+  return points;
+}
+
 TEST(DropFarAlone, KeepsWhatIsAtHandHoweverThin) {
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 300; ++i) points.emplace_back(static_cast<float>(i), 0.0F, 0.0F);
@@ -44,11 +54,7 @@ TEST(DropFarAlone, KeepsWhatIsAtHandHoweverThin) {
 }
 
 TEST(DropFarAlone, AsksForCompanyByTheWayThere) {
-  std::vector<Eigen::Vector3f> points;
-  for (int i = 0; i < 4000; ++i) {
-    points.emplace_back(
-        static_cast<float>(i % 20), static_cast<float>(i / 20 % 20), static_cast<float>(i / 400));
-  }
+  const std::vector<Eigen::Vector3f> points = bulk();
   const auto with_row = [&](float away, float apart) {
     std::vector<Eigen::Vector3f> more = points;
     for (int i = 0; i < 8; ++i) more.emplace_back(away, apart * static_cast<float>(i), 0.0F);
@@ -65,11 +71,7 @@ TEST(DropFarAlone, AsksForCompanyByTheWayThere) {
 }
 
 TEST(DropFarAlone, KeepsASurfaceAcrossTheEndsOfItsShells) {
-  std::vector<Eigen::Vector3f> points;
-  for (int i = 0; i < 4000; ++i) {
-    points.emplace_back(
-        static_cast<float>(i % 20), static_cast<float>(i / 20 % 20), static_cast<float>(i / 400));
-  }
+  const std::vector<Eigen::Vector3f> points = bulk();
   const Reach reach = measure_reach(points);
   for (const double shells : {1.0, 2.0, 4.0}) {
     std::vector<Eigen::Vector3f> more = points;

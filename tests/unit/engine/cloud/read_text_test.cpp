@@ -13,6 +13,12 @@ using ::testing::HasSubstr;
 using testing::parse;
 using ::testing::ThrowsMessage;
 
+void expect_the_two_points(const char* file, const std::string& name) {
+  const PointCloud cloud = parse(file, name);
+  ASSERT_EQ(cloud.size(), 2U) << file;
+  EXPECT_EQ(cloud.points[1], Eigen::Vector3f(4, 5, 6)) << file;
+}
+
 TEST(ReadText, ReadsPlainCoordinatesAndSkipsComments) {
   const PointCloud cloud = parse(testing::xyz_text(6), "a.xyz");
   ASSERT_EQ(cloud.size(), 6U);
@@ -34,9 +40,7 @@ TEST(ReadText, AcceptsCommasTabsSemicolonsAndColumnNames) {
                            "1\t2\t3\r\n4\t5\t6\r\n",
                            "//X Y Z\n1;2;3\n4;5;6",
                            "1 2 3 0.25\n4 5 6 0.5\n"}) {
-    const PointCloud cloud = parse(file, "a.txt");
-    ASSERT_EQ(cloud.size(), 2U) << file;
-    EXPECT_EQ(cloud.points[1], Eigen::Vector3f(4, 5, 6)) << file;
+    expect_the_two_points(file, "a.txt");
   }
 }
 
@@ -46,9 +50,7 @@ TEST(ReadText, GoesByTheNamesOfColumns) {
                            "y x z\n2 1 3 0.5\n5 4 6 0.5\n",
                            "id,x [m],y [m],z [m]\n900001,1,2,3\n900002,4,5,6\n",
                            "\xef\xbb\xbf\"Z[m]\";\"Y[m]\";\"X[m]\"\r\n3;2;1\r\n6;5;4\r\n"}) {
-    const PointCloud cloud = parse(file, "a.csv");
-    ASSERT_EQ(cloud.size(), 2U) << file;
-    EXPECT_EQ(cloud.points[1], Eigen::Vector3f(4, 5, 6)) << file;
+    expect_the_two_points(file, "a.csv");
   }
   const PointCloud all =
       parse("R,G,B,normal_x,normal_y,normal_z,X,Y,Z,time\n1,2,3,0,0,1,7,8,9,0.5\n", "a.csv");
